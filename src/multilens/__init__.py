@@ -1,0 +1,57 @@
+"""multilens: where the lenses of a multi-camera depth sensor go, how wide they open and where they focus.
+
+Lengths are millimetres throughout. The names below are the whole public interface; each is loaded when it is first used, so
+that importing the package, and asking the command line for help, costs next to nothing.
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from multilens.back import Back as Back
+    from multilens.cues import LensDefocus as LensDefocus
+    from multilens.cues import PairStereo as PairStereo
+    from multilens.design import Design as Design
+    from multilens.geometry.shape import disc as disc
+    from multilens.geometry.shape import polygon as polygon
+    from multilens.geometry.shape import rectangle as rectangle
+    from multilens.layout import Layout as Layout
+    from multilens.lens import Lens as Lens
+    from multilens.penalty import area_penalty as area_penalty
+    from multilens.penalty import distance_penalty as distance_penalty
+    from multilens.problem import Problem as Problem
+    from multilens.problem import ScoreProblem as ScoreProblem
+    from multilens.problem import linear_depths as linear_depths
+    from multilens.problem import log_depths as log_depths
+    from multilens.search.solve import solve as solve
+
+_HOME = {
+    "Back": "back",
+    "Design": "design",
+    "Layout": "layout",
+    "Lens": "lens",
+    "LensDefocus": "cues",
+    "PairStereo": "cues",
+    "Problem": "problem",
+    "ScoreProblem": "problem",
+    "area_penalty": "penalty",
+    "disc": "geometry.shape",
+    "distance_penalty": "penalty",
+    "linear_depths": "problem",
+    "log_depths": "problem",
+    "polygon": "geometry.shape",
+    "rectangle": "geometry.shape",
+    "solve": "search.solve",
+}
+
+__all__ = sorted(_HOME)
+
+
+def __getattr__(name: str) -> object:
+    if name not in _HOME:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(f"{__name__}.{_HOME[name]}"), name)
+
+
+def __dir__() -> list[str]:
+    return __all__

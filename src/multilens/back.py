@@ -1,0 +1,116 @@
+"""The back of a device: where lenses may stand."""
+
+from dataclasses import dataclass, replace
+from math import isfinite
+
+from shapely import MultiPolygon, Polygon
+from shapely.geometry.base import BaseGeometry
+
+from multilens.geometry import shape
+from multilens.geometry.shape import Shape
+
+
+@dataclass(frozen=True)
+class KeepOut:
+    """A named place on the back that lenses stay clear of.
+
+    Args:
+        name: what stands there: flash, microphone, logo.
+        shape: its outline.
+        clearance: distance that a lens' body keeps from it, mm, >= 0.
+    """
+
+    name: str
+    shape: Shape
+    clearance: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not isfinite(self.clearance) or self.clearance < 0:
+            raise ValueError(f"clearance of keep-out {self.name} must be >= 0 mm and finite, got {self.clearance:g}")
+
+
+@dataclass(frozen=True)
+class Back:
+    """An outline and what stands in it, seen from behind: x to the right, y down, millimetres.
+
+    Args:
+        outline: a shapely Polygon or MultiPolygon (several parts, holes), or a Shape with round corners.
+        keep_outs: places that lenses stay clear of; `keep_out` adds one.
+
+    Raises:
+        ValueError: the outline crosses itself, is not finite, is grown from a core that is not convex, or two keep-outs
+            share a name.
+    """
+
+    outline: Shape
+    keep_outs: tuple[KeepOut, ...] = ()
+
+    def __init__(self, outline: Shape | BaseGeometry, keep_outs: tuple[KeepOut, ...] = ()) -> None:
+        outline = _as_shape("outline", outline)
+        if outline.radius > 0 and not outline.core.equals(outline.core.convex_hull):
+            raise ValueError(
+                "outline with round corners must have a convex core, got one with a notch, a hole or parts"
+            )
+        if outline.radius == 0 and not isinstance(outline.core, Polygon | MultiPolygon):
+            raise ValueError(f"outline must enclose an area, got a {outline.core.geom_type}")
+        names = [keep_out.name for keep_out in keep_outs]
+        for name in names:
+            if names.count(name) > 1:
+                raise ValueError(f"keep-outs must have names of their own, got {name} twice")
+        object.__setattr__(self, "outline", outline)
+        object.__setattr__(self, "keep_outs", tuple(keep_outs))
+
+    @classmethod
+    def rectangle(cls, width: float, height: float) -> "Back":
+        """Make a rectangular back, its top left corner at the origin; width and height in mm, > 0."""
+        return cls(shape.rectangle(width, height))
+
+    @classmethod
+    def rounded_rectangle(cls, width: float, height: float, corner: float) -> "Back":
+        """Make a rectangular back with round corners, the top left of its bounding box at the origin.
+
+        Args:
+            width: mm, > 0.
+            height: mm, > 0.
+            corner: radius of the corners, mm, from 0 to half the shorter side.
+        """
+        return cls(shape.rectangle(width, height, corner=corner))
+
+    @classmethod
+    def disc(cls, radius: float) -> "Back":
+        """Make a round back centred on the origin; radius in mm, > 0."""
+        return cls(shape.disc((0.0, 0.0), radius))
+
+    def keep_out(self, name: str, shape: Shape | BaseGeometry, clearance: float = 0.0) -> "Back":
+        """Give this back with one more place that lenses stay clear of.
+
+        Args:
+            name: what stands there, unlike the others' names.
+            shape: its outline, mm, on the back's own axes.
+            clearance: distance that a lens' body keeps from it, mm, >= 0.
+
+        Raises:
+            ValueError: the name is taken, the shape is not valid or the clearance is negative.
+        """
+        added = KeepOut(name, _as_shape(f"keep-out {name}", shape), clearance)
+        return replace(self, keep_outs=(*self.keep_outs, added))
+
+    def region(self) -> BaseGeometry:
+        """Give where bodies may be as a plain polygon: the outline less each keep-out grown by its clearance; arcs are cut."""
+        region = self.outline.polygon()
+        for keep_out in self.keep_outs:
+            region = region.difference(Shape(keep_out.shape.core, keep_out.shape.radius + keep_out.clearance).polygon())
+        return region
+
+    @property
+    def size(self) -> float:
+        """Diagonal of the bounding box, mm: the scale of everything on this back."""
+        left, top, right, bottom = self.outline.bounds
+        return ((right - left) ** 2 + (bottom - top) ** 2) ** 0.5
+
+
+def _as_shape(name: str, given: Shape | BaseGeometry) -> Shape:
+    try:
+        return given if isinstance(given, Shape) else Shape(given)
+    except ValueError as error:
+        raise ValueError(f"{name}: {error}") from None

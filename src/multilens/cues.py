@@ -1,0 +1,107 @@
+"""Cues: what can be measured at a depth, by which lenses, and how far off the measured depth will be."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Protocol, runtime_checkable
+
+import torch
+from jaxtyping import Float
+from torch import Tensor
+
+from multilens.geometry.pairs import pair_distance, pair_indices
+from multilens.layout import Layout
+from multilens.lens import Lens
+from multilens.optics.defocus import focused_sensitivity
+from multilens.optics.stereo import pair_angular_noise, stereo_sensitivity
+
+NANOMETRE = 1e-6
+"""mm"""
+
+
+@dataclass(frozen=True)
+class Measurement:
+    """One way to measure depth: a cue, and the lens or the two lenses it uses.
+
+    Args:
+        cue: name of the cue: stereo, defocus.
+        lenses: index of each lens that takes part, from 0.
+        tier: which of the lens' foci, from 0; None where the cue does not use one.
+        label: how tables and pictures call it; lenses and tiers are counted from 1 there.
+    """
+
+    cue: str
+    lenses: tuple[int, ...]
+    tier: int | None
+    label: str
+
+
+@runtime_checkable
+class Cue(Protocol):
+    """A way to measure depth, for every lens or pair of lenses that can."""
+
+    def measurements(self, lenses: Sequence[Lens]) -> tuple[Measurement, ...]:
+        """Name each of the k measurements that these lenses allow."""
+        ...
+
+    def __call__(
+        self, layout: Layout, lenses: Sequence[Lens], depths: Float[Tensor, " z"]
+    ) -> Float[Tensor, "*batch k z"]:
+        """Give the depth error of each measurement at each depth, mm, differentiable in the layout."""
+        ...
+
+
+@dataclass(frozen=True)
+class PairStereo:
+    """Stereo of every pair of lenses by the distance of their centres: err = Z^2 / b * sqrt((n1/f1)^2/2 + (n2/f2)^2/2).
+
+    Reference:
+        Thesis, equation 4.3, for each pair; unequal lenses by the root mean square of their angular noises.
+    """
+
+    def measurements(self, lenses: Sequence[Lens]) -> tuple[Measurement, ...]:
+        """Name the pairs, 1-2, 1-3, ..., 2-3, ..."""
+        pairs = pair_indices(len(lenses)).T.tolist()
+        return tuple(Measurement("stereo", (i, j), None, f"stereo {i + 1}-{j + 1}") for i, j in pairs)
+
+    def __call__(
+        self, layout: Layout, lenses: Sequence[Lens], depths: Float[Tensor, " z"]
+    ) -> Float[Tensor, "*batch p z"]:
+        """Give the depth error of every pair, mm; lenses closer than a nanometre count as that far apart."""
+        angular_noise = _column([lens.disparity_noise / lens.focal_length for lens in lenses], layout)
+        first, second = pair_indices(len(lenses), layout.position.device)
+        noise = pair_angular_noise(angular_noise[first], angular_noise[second])
+        baseline = pair_distance(layout.position).clamp(min=NANOMETRE)
+        return stereo_sensitivity(depths, baseline.unsqueeze(-1), (1 / noise).unsqueeze(-1))
+
+
+@dataclass(frozen=True)
+class LensDefocus:
+    """Differential defocus of every lens and tier: err = Z abs(Z - Zf) n / (2 A f).
+
+    Reference:
+        Thesis, equation 5.5 in the form of its chapter 6, for each lens.
+    """
+
+    def measurements(self, lenses: Sequence[Lens]) -> tuple[Measurement, ...]:
+        """Name the lenses, and their tiers where a lens has several."""
+        return tuple(
+            Measurement("defocus", (i,), t, f"defocus {i + 1}" + (f" tier {t + 1}" if lens.tiers > 1 else ""))
+            for i, lens in enumerate(lenses)
+            for t in range(lens.tiers)
+        )
+
+    def __call__(
+        self, layout: Layout, lenses: Sequence[Lens], depths: Float[Tensor, " z"]
+    ) -> Float[Tensor, "*batch k z"]:
+        """Give the depth error of every lens and tier, mm; it is zero where the depth is in focus."""
+        tiers = [(i, t) for i, lens in enumerate(lenses) for t in range(lens.tiers)]
+        lens_index, tier_index = torch.tensor(tiers, device=layout.position.device).T
+        # Sensitivity times noise: the focal length is counted in units of the noise, which saves a pass over all depths.
+        focal_length = _column([lens.focal_length / lens.blur_noise for lens in lenses], layout)[lens_index]
+        radius = layout.aperture_radius[..., lens_index].unsqueeze(-1)
+        focus = layout.focus[..., lens_index, tier_index].unsqueeze(-1)
+        return focused_sensitivity(depths, radius, focal_length.unsqueeze(-1), focus)
+
+
+def _column(numbers: list[float], layout: Layout) -> Float[Tensor, " n"]:
+    return torch.tensor(numbers, dtype=layout.position.dtype, device=layout.position.device)

@@ -1,0 +1,158 @@
+"""A shape with exact round corners: a core of straight edges, grown by a radius."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from math import isfinite
+
+import numpy as np
+import shapely
+from jaxtyping import Float
+from shapely import LineString, MultiPolygon, Point, Polygon
+from shapely.geometry.base import BaseGeometry
+
+LARGEST_COORDINATE = 1e6
+"""mm; a kilometre is no longer the back of a device, and squares of larger numbers lose the micrometre."""
+
+
+@dataclass(frozen=True)
+class Shape:
+    """All points within `radius` of `core` (a Minkowski sum with a disc).
+
+    A polygon is a core of radius 0, a disc a point grown by its radius, a rounded rectangle a smaller rectangle grown by its
+    corner. No arc is ever cut into edges: distances to a shape are exact.
+
+    Args:
+        core: Polygon, MultiPolygon, LineString or Point; coordinates in mm, finite, valid. Rings may be open or closed,
+            run either way and repeat points; they are stored in one tidy form.
+        radius: mm, >= 0; > 0 for a core without area.
+
+    Raises:
+        ValueError: the core is empty, not finite, crosses itself, or is of another type; the radius is negative.
+    """
+
+    core: BaseGeometry
+    radius: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.core, Polygon | MultiPolygon | LineString | Point):
+            raise ValueError(f"shape must be a polygon, line or point, got {type(self.core).__name__}")
+        if not isfinite(self.radius) or self.radius < 0 or self.radius > LARGEST_COORDINATE:
+            raise ValueError(f"radius must be >= 0 mm and finite, got {self.radius:g}")
+        if self.core.is_empty:
+            raise ValueError("shape must hold at least one point, got an empty one")
+        refuse_wild_coordinates(shapely.get_coordinates(self.core))
+        if not self.core.is_valid:
+            raise ValueError(f"shape must not cross itself, got {shapely.is_valid_reason(self.core)}")
+        if self.radius == 0 and self.core.area == 0:
+            raise ValueError(f"shape must have an area, got a {self.core.geom_type} of radius 0 mm")
+        object.__setattr__(self, "core", shapely.remove_repeated_points(self.core).normalize())
+
+    @cached_property
+    def segments(self) -> Float[np.ndarray, "e 2 2"]:
+        """Give the straight edges of the core, start and end point of each, mm, as closed rings.
+
+        A line is a ring that runs there and back, a point one edge of length 0: rings that enclose nothing.
+        """
+        if isinstance(self.core, Point):
+            return np.repeat(shapely.get_coordinates(self.core)[None], 2, axis=1)
+        if isinstance(self.core, LineString):
+            there = shapely.get_coordinates(self.core)
+            rings = [np.concatenate([there, there[-2::-1]])]
+        else:
+            rings = [shapely.get_coordinates(ring) for ring in shapely.get_parts(self.core.boundary)]
+        return np.concatenate([np.stack([ring[:-1], ring[1:]], axis=1) for ring in rings])
+
+    def polygon(self, segments_per_quarter: int = 64) -> Polygon | MultiPolygon:
+        """Give the shape as a plain polygon, its arcs cut into edges with their ends on the arc: to draw, and to measure areas."""
+        grown = self.core if self.radius == 0 else self.core.buffer(self.radius, quad_segs=segments_per_quarter)
+        assert isinstance(grown, Polygon | MultiPolygon)
+        return grown
+
+    def signed_distance(self, x: Float[np.ndarray, "*m"], y: Float[np.ndarray, "*m"]) -> Float[np.ndarray, "*m"]:
+        """Give the distance of many points to the rim, mm, negative inside; by an index, so that many edges cost little.
+
+        As `multilens.geometry.distance.signed_distance` does, without a gradient.
+        """
+        rim = self.core.boundary if self.core.area > 0 else self.core
+        shapely.prepare(rim)
+        shapely.prepare(self.core)
+        distance = shapely.distance(shapely.points(x, y), rim)
+        inside = shapely.contains_xy(self.core, x, y) & (self.core.area > 0)
+        return np.where(inside, -distance, distance) - self.radius
+
+    @property
+    def bounds(self) -> tuple[float, float, float, float]:
+        """Least x, least y, largest x and largest y, mm, exact."""
+        left, top, right, bottom = self.core.bounds
+        return left - self.radius, top - self.radius, right + self.radius, bottom + self.radius
+
+
+def refuse_wild_coordinates(coordinates: Float[np.ndarray, "m 2"]) -> None:
+    """Raise a ValueError that names the first point that is not finite or lies beyond a kilometre."""
+    for index, (x, y) in enumerate(coordinates):
+        if not (abs(x) <= LARGEST_COORDINATE and abs(y) <= LARGEST_COORDINATE):
+            raise ValueError(
+                f"point {index} must be finite and within {LARGEST_COORDINATE:g} mm of the origin, got ({x:g}, {y:g})"
+            )
+
+
+def disc(centre: tuple[float, float], radius: float) -> Shape:
+    """Make a disc.
+
+    Args:
+        centre: x and y, mm.
+        radius: mm, > 0.
+    """
+    return Shape(Point(checked_points([centre])[0]), radius)
+
+
+def rectangle(width: float, height: float, centre: tuple[float, float] | None = None, corner: float = 0.0) -> Shape:
+    """Make a rectangle with round corners.
+
+    Args:
+        width: along x, mm, > 0.
+        height: along y, mm, > 0.
+        centre: mm; None puts the corner of least x and y at the origin.
+        corner: radius of the corners, mm, from 0 to half the shorter side.
+
+    Raises:
+        ValueError: a length is out of its range.
+    """
+    for name, length in (("width", width), ("height", height)):
+        if not 0 < length <= LARGEST_COORDINATE:
+            raise ValueError(f"{name} must be > 0 mm and finite, got {length:g}")
+    if not 0 <= corner <= min(width, height) / 2:
+        raise ValueError(
+            f"corner must be from 0 to half the shorter side, {min(width, height) / 2:g} mm, got {corner:g}"
+        )
+    x, y = checked_points([centre or (width / 2, height / 2)])[0]
+    half_width, half_height = width / 2 - corner, height / 2 - corner
+    if half_width == half_height == 0:
+        return Shape(Point(x, y), corner)
+    if half_width == 0 or half_height == 0:
+        return Shape(LineString([(x - half_width, y - half_height), (x + half_width, y + half_height)]), corner)
+    return Shape(shapely.box(x - half_width, y - half_height, x + half_width, y + half_height), corner)
+
+
+def polygon(points: list[tuple[float, float]]) -> Shape:
+    """Make a polygon from its corners, in order, the ring open or closed.
+
+    Args:
+        points: at least three, mm, finite.
+
+    Raises:
+        ValueError: fewer than three points, one not finite, or edges that cross (the crossing is named).
+    """
+    if len(points) < 3:
+        raise ValueError(f"polygon must have at least 3 points, got {len(points)}")
+    return Shape(Polygon(checked_points(points)))
+
+
+def checked_points(points: list[tuple[float, float]]) -> Float[np.ndarray, "m 2"]:
+    """Give points as an array, refused before any library sees them if they are not finite pairs of numbers."""
+    for index, point in enumerate(points):
+        if len(point) != 2:
+            raise ValueError(f"point {index} must be x and y, got {len(point)} numbers")
+    coordinates = np.asarray(points, dtype=np.float64)
+    refuse_wild_coordinates(coordinates)
+    return coordinates

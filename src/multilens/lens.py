@@ -1,0 +1,89 @@
+"""A lens: the hardware that is given, and the ranges in which the design may choose."""
+
+from dataclasses import dataclass
+from math import isfinite
+from typing import Any
+
+
+@dataclass(frozen=True)
+class Lens:
+    """What is known of a lens before it is placed.
+
+    Args:
+        focal_length: f, mm, > 0.
+        aperture_radius: least and largest radius A of the entrance pupil, mm, 0 < least <= largest; equal
+            ones fix it.
+        focus: nearest and farthest in-focus depth, mm, > 0; None lets it focus anywhere in the problem's range of depths.
+        clearance: from the rim of the aperture to the rim of the body that may touch nothing, mm, >= 0.
+        disparity_noise: smallest shift between two images that the sensor tells apart, mm on the sensor, > 0; 1 gives the
+            thesis' scalars.
+        blur_noise: smallest change of blur that the sensor tells apart, mm on the sensor, > 0.
+        tiers: sensors behind the one aperture, each with a focus of its own (a jumping spider's eye has 4), >= 1.
+        position: None for a free lens, (x, y) in mm for a locked one, and None in place of one coordinate for a lens that
+            slides along a line.
+
+    Raises:
+        ValueError: a number is out of its range.
+    """
+
+    focal_length: float
+    aperture_radius: tuple[float, float]
+    focus: tuple[float, float] | None = None
+    clearance: float = 0.0
+    disparity_noise: float = 1.0
+    blur_noise: float = 1.0
+    tiers: int = 1
+    position: tuple[float | None, float | None] | None = None
+
+    def __post_init__(self) -> None:
+        _refuse_unless_positive("focal_length", self.focal_length)
+        _refuse_unless_range("aperture_radius", self.aperture_radius)
+        if self.focus is not None:
+            _refuse_unless_range("focus", self.focus)
+        if not isfinite(self.clearance) or self.clearance < 0:
+            raise ValueError(f"clearance must be >= 0 mm and finite, got {self.clearance:g}")
+        _refuse_unless_positive("disparity_noise", self.disparity_noise)
+        _refuse_unless_positive("blur_noise", self.blur_noise)
+        if self.tiers != int(self.tiers) or self.tiers < 1:
+            raise ValueError(f"tiers must be a whole number >= 1, got {self.tiers:g}")
+        for name, coordinate in zip("xy", self.position or (), strict=False):
+            if coordinate is not None and not isfinite(coordinate):
+                raise ValueError(f"{name} of position must be finite, got {coordinate:g}")
+
+    @classmethod
+    def from_f_number(cls, focal_length: float, f_number: tuple[float, float], **others: Any) -> "Lens":
+        """Make a lens whose aperture is bounded by f-numbers, A = f / (2 N).
+
+        Args:
+            focal_length: f, mm, > 0.
+            f_number: least and largest N, 0 < least <= largest.
+            **others: everything else that a lens takes.
+
+        Raises:
+            ValueError: a number is out of its range.
+
+        Reference:
+            Thesis, equation 5.1.
+        """
+        _refuse_unless_positive("focal_length", focal_length)
+        _refuse_unless_range("f_number", f_number)
+        fastest, slowest = f_number
+        return cls(focal_length, (focal_length / (2 * slowest), focal_length / (2 * fastest)), **others)
+
+    @property
+    def least_body_radius(self) -> float:
+        """Radius of the disc that the lens needs even at its smallest aperture, mm."""
+        return self.aperture_radius[0] + self.clearance
+
+
+def _refuse_unless_positive(name: str, value: float) -> None:
+    if not isfinite(value) or value <= 0:
+        raise ValueError(f"{name} must be > 0 and finite, got {value:g}")
+
+
+def _refuse_unless_range(name: str, value: tuple[float, float]) -> None:
+    least, largest = value
+    _refuse_unless_positive(f"least {name}", least)
+    _refuse_unless_positive(f"largest {name}", largest)
+    if least > largest:
+        raise ValueError(f"{name} must have least <= largest, got {least:g} > {largest:g}")

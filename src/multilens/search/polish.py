@@ -1,0 +1,117 @@
+"""The polish: from nearly feasible to a local optimum on its constraints, by sequential quadratic programming."""
+
+from collections.abc import Callable
+from time import monotonic
+
+import numpy as np
+import torch
+from jaxtyping import Float
+from torch import Tensor
+
+from multilens.problem import Question
+from multilens.search.limits import Limits
+from multilens.search.variables import Variables
+
+MARGIN = 1e-10
+"""Room that a polished layout keeps beyond what is asked, in units of the back's diagonal: more than rounding takes."""
+
+ROUNDS = 3
+"""A lens that ends at an edge which was not watched is polished again with the edges around its new place."""
+
+ValueAndGradient = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
+
+
+class OutOfTimeError(Exception):
+    """The deadline passed in the middle of a polish."""
+
+
+def polish(
+    question: Question, variables: Variables, x: Float[Tensor, " d"], deadline: float | None = None
+) -> Float[Tensor, " d"]:
+    """Take one vector to the nearest local optimum of the exact score under the exact constraints.
+
+    Where the score is the largest of several terms, one more unknown is minimised that is no less than any of them. The winner
+    of a depth may change on the way: a minimum of smooth errors has only concave kinks, and no local optimum lies on one.
+
+    Args:
+        question: what is asked.
+        variables: in float64.
+        x: where to begin; may be infeasible.
+        deadline: by the monotonic clock, s.
+
+    Returns:
+        The polished vector, feasible up to rounding unless the constraints cannot be met from here.
+
+    Raises:
+        OutOfTimeError: the deadline passed.
+
+    Reference:
+        D. Kraft, A software package for sequential quadratic programming (1988), as SciPy's SLSQP.
+    """
+    from scipy.optimize import minimize
+
+    size = question.back.size
+    scale = question.terms(variables.layout(x)).abs().amax().clamp(min=torch.finfo(x.dtype).tiny)
+
+    def terms(vector: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        if deadline is not None and monotonic() > deadline:
+            raise OutOfTimeError
+        point = torch.from_numpy(vector).requires_grad_()
+        values = question.terms(variables.layout(point)) / scale
+        rows = [torch.autograd.grad(value, point, retain_graph=True)[0] for value in values]
+        return values.detach().numpy(), torch.stack(rows).numpy()
+
+    for _ in range(ROUNDS):
+        limits = Limits(question, variables, variables.layout(x))
+
+        def room(vector: np.ndarray, limits: Limits = limits) -> tuple[np.ndarray, np.ndarray]:
+            values, gradient = limits(torch.from_numpy(vector))
+            return values.numpy() / size - MARGIN, gradient.numpy() / size
+
+        objective, constraint, more = _as_one_objective(terms, room, x.numpy())
+        value, jacobian = _apart(constraint)
+        result = minimize(
+            objective,
+            np.append(x.numpy(), more),
+            jac=True,
+            bounds=[(0.0, high) for high in variables.upper.tolist()] + [(None, None)] * len(more),
+            constraints={"type": "ineq", "fun": value, "jac": jacobian},
+            method="SLSQP",
+            options={"ftol": 1e-13, "maxiter": 300},
+        )
+        if not np.isfinite(result.x).all():
+            break
+        x = torch.from_numpy(result.x[: len(x)]).clamp(min=0).minimum(variables.upper)
+        if Limits(question, variables, variables.layout(x))(x)[0].min() >= 0:
+            break
+    return x
+
+
+def _as_one_objective(
+    terms: ValueAndGradient, room: ValueAndGradient, x: np.ndarray
+) -> tuple[ValueAndGradient, ValueAndGradient, np.ndarray]:
+    """Give objective, constraints and the start of the unknowns added to x: none for one term, their bound for several."""
+    values, _ = terms(x)
+    if len(values) == 1:
+        return lambda v: tuple(part[0] for part in terms(v)), room, np.empty(0)
+    along_bound = np.append(np.zeros_like(x), 1.0)
+
+    def constraint(v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        (values, gradients), (left, room_gradient) = terms(v[:-1]), room(v[:-1])
+        below = np.column_stack([-gradients, np.ones(len(values))])
+        return np.append(v[-1] - values, left), np.vstack([below, np.pad(room_gradient, ((0, 0), (0, 1)))])
+
+    return lambda v: (v[-1], along_bound), constraint, values.max(keepdims=True)
+
+
+def _apart(both: ValueAndGradient) -> tuple[Callable[[np.ndarray], np.ndarray], Callable[[np.ndarray], np.ndarray]]:
+    """Give value and gradient as two functions, as SciPy asks for constraints, that compute each point once."""
+    last: dict[bytes, tuple[np.ndarray, np.ndarray]] = {}
+
+    def ask(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        if x.tobytes() not in last:
+            last.clear()
+            last[x.tobytes()] = both(x.copy())
+        return last[x.tobytes()]
+
+    return lambda x: ask(x)[0], lambda x: ask(x)[1]

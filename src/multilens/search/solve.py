@@ -1,0 +1,148 @@
+"""Solve a question: many starts descend, the best are polished, and the best of those is proved feasible."""
+
+from collections.abc import Callable
+from math import inf, nan
+from time import monotonic
+
+import torch
+
+from multilens.certificate import Certificate
+from multilens.convergence import Convergence
+from multilens.design import COMPLETE, INFEASIBLE, OUT_OF_TIME, Design, Origin
+from multilens.layout import Layout
+from multilens.penalty import Price, distance_penalty
+from multilens.problem import Question
+from multilens.search.descent import Descent, DescentSettings, descend
+from multilens.search.fit import why_nothing_fits
+from multilens.search.legalise import legalise
+from multilens.search.polish import OutOfTimeError, polish
+from multilens.search.progress import Listener, Progress
+from multilens.search.starts import scattered_starts
+from multilens.search.variables import Variables
+from multilens.storage import source_commit, versions
+
+DESCENT_SHARE = 0.5
+"""Part of a time limit that the descent may take; the polish, which makes a layout feasible, has the rest."""
+
+ALIKE = 1e-4
+"""Starts whose penalised scores differ by less than this part are taken for the same layout, and one of them is polished."""
+
+
+def solve(
+    problem: Question,
+    starts: int = 256,
+    seed: int = 0,
+    time_limit: float | None = None,
+    polished: int = 24,
+    penalty: Callable[[Question], Price] = distance_penalty,
+    descent: DescentSettings | None = None,
+    listener: Listener = lambda progress: None,
+) -> Design:
+    """Find the layout that answers a question best.
+
+    Args:
+        problem: what is asked.
+        starts: how many layouts descend at once, >= 1.
+        seed: of the starts; the same seed on the same machine gives the same design to the bit, unless time ran out.
+        time_limit: after which the best so far is given, s; None waits to the end.
+        polished: how many of the best distinct starts are polished, >= 1.
+        penalty: what a start pays for room that is not there: `distance_penalty` or `area_penalty`.
+        descent: how the starts go from rough to fine; None takes the defaults.
+        listener: told of the progress some sixty times and after every polish.
+
+    Returns:
+        The best feasible design; or, with the status "infeasible" and a reason, the layout that came nearest to being so.
+
+    Raises:
+        ValueError: a number is out of its range.
+        RuntimeError: no start stayed healthy: every one met a score or a gradient that is not finite.
+    """
+    for name, number in (("starts", starts), ("polished", polished)):
+        if number < 1:
+            raise ValueError(f"{name} must be >= 1, got {number}")
+    if time_limit is not None and not time_limit > 0:
+        raise ValueError(f"time_limit must be > 0 s, got {time_limit:g}")
+    origin = Origin(seed, starts, polished, penalty.__name__, time_limit, versions(), source_commit())
+    began = monotonic()
+    variables = Variables(problem)
+    x = scattered_starts(problem, variables, starts, seed)
+    reason = why_nothing_fits(problem)
+    if reason is not None:
+        layout, certificate = legalise(problem, variables.layout(x[0]))
+        return Design(problem, layout, INFEASIBLE, reason, certificate, origin=origin)
+
+    settings = descent or DescentSettings()
+    end = inf if time_limit is None else began + time_limit
+    descended = _descend_all(problem, x, settings, penalty, began, end, listener)
+    order = _best_first(descended, settings.penalty[1])[:polished]
+    found, scores, in_time = _polish_each(problem, variables, descended, order, end, listener)
+    convergence = Convergence(descended.history_steps, descended.history, tuple(order), tuple(scores))
+    layout, certificate = found
+    if certificate.feasible:
+        return Design(problem, layout, COMPLETE if in_time else OUT_OF_TIME, "", certificate, convergence, origin)
+    tightest = certificate.tightest
+    reason = f"no feasible layout found: at best {tightest.what} lacks {-tightest.room:.4g} mm"
+    return Design(problem, layout, INFEASIBLE, reason, certificate, convergence, origin)
+
+
+def _descend_all(
+    problem: Question,
+    x: torch.Tensor,
+    settings: DescentSettings,
+    penalty: Callable[[Question], Price],
+    began: float,
+    end: float,
+    listener: Listener,
+) -> Descent:
+    half_time = began + DESCENT_SHARE * (end - began)
+
+    def go_on(step: int, alive: int, best: float) -> bool:
+        now = monotonic()
+        whole = settings.steps / max(step, 1) * (now - began) / DESCENT_SHARE
+        listener(Progress("descent", step / settings.steps, len(x), alive, best, min(began + whole, end) - now))
+        return now < half_time or step == 0
+
+    # Single precision is twice as fast and plenty to tell basins apart; the polish goes on in double.
+    variables = Variables(problem, torch.float32)
+    descended = descend(problem, variables, penalty(problem), x.float(), settings, go_on)
+    if not descended.score.isfinite().any():
+        raise RuntimeError(f"none of the {len(x)} starts stayed healthy: scores or gradients were not finite")
+    return descended
+
+
+def _best_first(descended: Descent, weight: float) -> list[int]:
+    """Give the healthy starts in order of score and penalty, of those that came to the same place only one."""
+    merit = descended.score.abs().log() * descended.score.sign() + weight * descended.price
+    order = [index for index in merit.argsort().tolist() if merit[index].isfinite()]
+    return [index for k, index in enumerate(order) if k == 0 or merit[index] - merit[order[k - 1]] > ALIKE]
+
+
+def _polish_each(
+    problem: Question,
+    variables: Variables,
+    descended: Descent,
+    order: list[int],
+    end: float,
+    listener: Listener,
+) -> tuple[tuple[Layout, Certificate], list[float], bool]:
+    """Polish the starts in order until the end; give the best layout, every score, and whether there was time for all."""
+    best_score, scores = inf, []
+    x = descended.x.double()
+    best = legalise(problem, variables.layout(x[order[0]]))
+    if best[1].feasible:
+        best_score = problem.terms(best[0]).amax().item()
+    began, alive = monotonic(), int(descended.score.isfinite().sum())
+    for done, index in enumerate(order):
+        try:
+            layout, certificate = legalise(problem, variables.layout(polish(problem, variables, x[index], end)))
+        except OutOfTimeError:
+            return best, scores, False
+        score = problem.terms(layout).amax().item() if certificate.feasible else nan
+        scores.append(score)
+        nearer = not best[1].feasible and certificate.tightest.room > best[1].tightest.room
+        if score < best_score or nearer or (certificate.feasible and not best[1].feasible):
+            best, best_score = (layout, certificate), score if certificate.feasible else inf
+        now = monotonic()
+        left = min((now - began) / (done + 1) * (len(order) - done - 1), end - now)
+        listener(Progress("polish", (done + 1) / len(order), len(x), alive, best_score, left))
+    return best, scores, True

@@ -1,0 +1,51 @@
+"""Where the search begins: many layouts spread evenly over all that the question allows."""
+
+import torch
+from jaxtyping import Float
+from torch import Tensor
+from torch.quasirandom import SobolEngine
+
+from multilens.constraints import quick_room
+from multilens.layout import Layout
+from multilens.problem import Question
+from multilens.search.variables import Variables
+
+PLACES_TRIED = 4096
+"""Spread over the bounding box; a back that fills a tenth of it leaves about 400 to choose from."""
+
+
+def scattered_starts(question: Question, variables: Variables, count: int, seed: int) -> Float[Tensor, "count d"]:
+    """Give vectors from a scrambled Sobol sequence, every free lens standing where its smallest body fits by itself.
+
+    A longer list begins with a shorter one of the same seed: what start i is does not depend on how many there are.
+
+    Args:
+        question: gives the back and the bodies.
+        variables: says which unknowns are free.
+        count: how many starts, >= 1.
+        seed: of the scrambling.
+
+    Returns:
+        Vectors, in the variables' own units.
+    """
+    draws = _sobol(len(variables) + len(question.lenses), count, seed).to(variables.upper)
+    layout = variables.layout(draws[:, : len(variables)] * variables.upper)
+    position = layout.position.clone()
+    for index, lens in enumerate(question.lenses):
+        places = places_that_fit(question, lens.least_body_radius, seed)
+        if lens.position is None and len(places):
+            chosen = (draws[:, len(variables) + index] * len(places)).long().clamp(max=len(places) - 1)
+            position[:, index] = places.to(position)[chosen]
+    return variables.vector(Layout(position, layout.aperture_radius, layout.focus))
+
+
+def places_that_fit(question: Question, body_radius: float, seed: int) -> Float[Tensor, "p 2"]:
+    """Give points of the back, evenly spread and in no order, around which a body of this radius (mm) fits; maybe none."""
+    left, top, right, bottom = question.back.outline.bounds
+    corner, size = torch.tensor([left, top]).double(), torch.tensor([right - left, bottom - top]).double()
+    tried = corner + _sobol(2, PLACES_TRIED, seed) * size
+    return tried[(quick_room(question.back)(tried) >= body_radius).all(-1)]
+
+
+def _sobol(dimensions: int, count: int, seed: int) -> Float[Tensor, "count d"]:
+    return SobolEngine(dimensions, scramble=True, seed=seed).draw(count, dtype=torch.float64)
