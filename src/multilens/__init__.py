@@ -44,7 +44,6 @@ _HOME = {
     "solve": "search.solve",
 }
 
-__all__ = sorted(_HOME)
 
 
 def __getattr__(name: str) -> object:
@@ -54,4 +53,4 @@ def __getattr__(name: str) -> object:
 
 
 def __dir__() -> list[str]:
-    return __all__
+    return sorted(_HOME)
