@@ -1,13 +1,11 @@
 """The back of a device: where lenses may stand."""
 
 from dataclasses import dataclass, replace
-from math import isfinite
 
-from shapely import MultiPolygon, Polygon
 from shapely.geometry.base import BaseGeometry
 
 from multilens.geometry import shape
-from multilens.geometry.shape import Shape
+from multilens.geometry.shape import LARGEST_COORDINATE, Shape
 
 
 @dataclass(frozen=True)
@@ -25,8 +23,10 @@ class KeepOut:
     clearance: float = 0.0
 
     def __post_init__(self) -> None:
-        if not isfinite(self.clearance) or self.clearance < 0:
-            raise ValueError(f"clearance of keep-out {self.name} must be >= 0 mm and finite, got {self.clearance:g}")
+        if not 0 <= self.clearance <= LARGEST_COORDINATE:
+            raise ValueError(
+                f"clearance of keep-out {self.name} must be from 0 to {LARGEST_COORDINATE:g} mm, got {self.clearance:g}"
+            )
 
 
 @dataclass(frozen=True)
@@ -51,8 +51,6 @@ class Back:
             raise ValueError(
                 "outline with round corners must have a convex core, got one with a notch, a hole or parts"
             )
-        if outline.radius == 0 and not isinstance(outline.core, Polygon | MultiPolygon):
-            raise ValueError(f"outline must enclose an area, got a {outline.core.geom_type}")
         names = [keep_out.name for keep_out in keep_outs]
         for name in names:
             if names.count(name) > 1:

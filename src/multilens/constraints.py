@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import ceil
 from typing import Protocol, runtime_checkable
 
 import numpy as np
@@ -22,7 +23,8 @@ MOST_EDGES_EXACT = 48
 
 def body_radius(layout: Layout, lenses: Sequence[Lens]) -> Float[Tensor, "*batch n"]:
     """Give the radius of the disc that each lens needs for itself, A + clearance, mm."""
-    return layout.aperture_radius + torch.tensor([lens.clearance for lens in lenses]).to(layout.aperture_radius)
+    clearance = torch.tensor([lens.clearance for lens in lenses], dtype=torch.float64)
+    return layout.aperture_radius + clearance.to(layout.aperture_radius)
 
 
 def pair_room(layout: Layout, lenses: Sequence[Lens], gap: float) -> Float[Tensor, "*batch p"]:
@@ -73,14 +75,14 @@ class SampledRoom:
         left, top, right, bottom = back.outline.bounds
         width, height = right - left, bottom - top
         spacing = max(width, height) / cells
-        x = np.linspace(left, right, round(width / spacing) + 1)
-        y = np.linspace(top, bottom, round(height / spacing) + 1)
+        x = np.linspace(left, right, ceil(width / spacing) + 1)
+        y = np.linspace(top, bottom, ceil(height / spacing) + 1)
         at_x, at_y = np.meshgrid(x, y)
         limits = [-back.outline.signed_distance(at_x, at_y)]
         limits += [keep.shape.signed_distance(at_x, at_y) - keep.clearance for keep in back.keep_outs]
         self.grid = torch.from_numpy(np.minimum.reduce(limits))[None, None]
-        self.corner = torch.tensor([left, top])
-        self.size = torch.tensor([width, height])
+        self.corner = torch.tensor([left, top], dtype=torch.float64)
+        self.size = torch.tensor([width, height], dtype=torch.float64)
 
     def __call__(self, point: Float[Tensor, "*batch n 2"]) -> Float[Tensor, "*batch n 1"]:
         """Give the radius that the nearest limit leaves, mm; a point off the bounding box is read at its rim."""

@@ -12,8 +12,9 @@ from torch import Tensor
 class Layout:
     """Where the lenses stand, how wide they open and where they focus.
 
-    Numbers may be given as tensors or as (nested) lists, which become float64. A focus without tiers, [*batch, n], is read as
-    one tier. A lens of fewer tiers than others repeats its first focus in the places it does not have.
+    Numbers may be given as tensors or as (nested) lists; lists and whole numbers become float64. A focus without tiers,
+    [*batch, n], is read as one tier. A lens of fewer tiers than others repeats its first focus in the places it does not
+    have.
 
     Args:
         position: centre of each lens, mm, [*batch, n, 2].
@@ -57,4 +58,6 @@ class Layout:
 
 
 def _as_tensor(numbers: Tensor | Sequence) -> Tensor:
-    return numbers if isinstance(numbers, Tensor) else torch.tensor(numbers, dtype=torch.float64)
+    if isinstance(numbers, Tensor):
+        return numbers if numbers.is_floating_point() else numbers.double()
+    return torch.tensor(numbers, dtype=torch.float64)

@@ -44,8 +44,10 @@ class Lens:
             raise ValueError(f"clearance must be >= 0 mm and finite, got {self.clearance:g}")
         _refuse_unless_positive("disparity_noise", self.disparity_noise)
         _refuse_unless_positive("blur_noise", self.blur_noise)
-        if self.tiers != int(self.tiers) or self.tiers < 1:
-            raise ValueError(f"tiers must be a whole number >= 1, got {self.tiers:g}")
+        if not isinstance(self.tiers, int) or self.tiers < 1:
+            raise ValueError(f"tiers must be a whole number >= 1, got {self.tiers}")
+        if self.position is not None and len(self.position) != 2:
+            raise ValueError(f"position must be x and y, got {len(self.position)} numbers")
         for name, coordinate in zip("xy", self.position or (), strict=False):
             if coordinate is not None and not isfinite(coordinate):
                 raise ValueError(f"{name} of position must be finite, got {coordinate:g}")
@@ -82,6 +84,8 @@ def _refuse_unless_positive(name: str, value: float) -> None:
 
 
 def _refuse_unless_range(name: str, value: tuple[float, float]) -> None:
+    if len(value) != 2:
+        raise ValueError(f"{name} must be two numbers, least and largest, got {len(value)}")
     least, largest = value
     _refuse_unless_positive(f"least {name}", least)
     _refuse_unless_positive(f"largest {name}", largest)

@@ -22,12 +22,21 @@ from torch.autograd import Function
 from torch.autograd.function import once_differentiable
 
 EDGES = 128
-"""Of the polygon that stands for a disc; the area of an overlap is then off by about a part in a thousand of the overlap."""
+"""Of the polygon that stands for a disc. Its corners lie 2e-4 of the radius outside the circle and the middles of its edges
+1e-4 inside, so an area is between those of discs that much larger and smaller; the error falls with the square of EDGES."""
 
-_ANGLE = 2 * pi * np.arange(EDGES) / EDGES
-_CORNER = sqrt(2 * pi / (EDGES * sin(2 * pi / EDGES))) * np.stack([np.cos(_ANGLE), np.sin(_ANGLE)], axis=-1)
-_EDGE_PER_RADIUS = float(np.linalg.norm(_CORNER[0])) * cos(pi / EDGES)
-"""How fast an edge moves outward when the radius grows."""
+
+def regular_polygon(edges: int) -> tuple[Float[np.ndarray, "e 2"], float]:
+    """Give the corners of the regular polygon around the origin that has the area of the unit disc, and its inner radius.
+
+    The inner radius is also how fast an edge moves outward when the polygon grows with its disc.
+    """
+    outer = sqrt(2 * pi / (edges * sin(2 * pi / edges)))
+    angle = 2 * pi * np.arange(edges) / edges
+    return outer * np.stack([np.cos(angle), np.sin(angle)], axis=-1), outer * cos(pi / edges)
+
+
+_CORNER, _EDGE_PER_RADIUS = regular_polygon(EDGES)
 
 
 def overlap_area(

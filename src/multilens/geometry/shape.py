@@ -1,8 +1,9 @@
 """A shape with exact round corners: a core of straight edges, grown by a radius."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from decimal import Decimal
 from functools import cached_property
-from math import isfinite
 
 import numpy as np
 import shapely
@@ -27,7 +28,8 @@ class Shape:
         radius: mm, >= 0; > 0 for a core without area.
 
     Raises:
-        ValueError: the core is empty, not finite, crosses itself, or is of another type; the radius is negative.
+        ValueError: the core is empty, not finite, crosses itself, has a hole outside its shell, or is of another type; the
+            radius is negative. What shapely finds invalid is named with its place.
     """
 
     core: BaseGeometry
@@ -36,13 +38,15 @@ class Shape:
     def __post_init__(self) -> None:
         if not isinstance(self.core, Polygon | MultiPolygon | LineString | Point):
             raise ValueError(f"shape must be a polygon, line or point, got {type(self.core).__name__}")
-        if not isfinite(self.radius) or self.radius < 0 or self.radius > LARGEST_COORDINATE:
-            raise ValueError(f"radius must be >= 0 mm and finite, got {self.radius:g}")
+        if not 0 <= self.radius <= LARGEST_COORDINATE:
+            raise ValueError(f"radius must be from 0 to {LARGEST_COORDINATE:g} mm, got {self.radius:g}")
         if self.core.is_empty:
             raise ValueError("shape must hold at least one point, got an empty one")
         refuse_wild_coordinates(shapely.get_coordinates(self.core))
         if not self.core.is_valid:
-            raise ValueError(f"shape must not cross itself, got {shapely.is_valid_reason(self.core)}")
+            raise ValueError(
+                f"shape must not cross itself or have a hole outside, got {shapely.is_valid_reason(self.core)}"
+            )
         if self.radius == 0 and self.core.area == 0:
             raise ValueError(f"shape must have an area, got a {self.core.geom_type} of radius 0 mm")
         object.__setattr__(self, "core", shapely.remove_repeated_points(self.core).normalize())
@@ -120,32 +124,43 @@ def rectangle(width: float, height: float, centre: tuple[float, float] | None = 
     """
     for name, length in (("width", width), ("height", height)):
         if not 0 < length <= LARGEST_COORDINATE:
-            raise ValueError(f"{name} must be > 0 mm and finite, got {length:g}")
+            raise ValueError(f"{name} must be > 0 and at most {LARGEST_COORDINATE:g} mm, got {length:g}")
     if not 0 <= corner <= min(width, height) / 2:
         raise ValueError(
             f"corner must be from 0 to half the shorter side, {min(width, height) / 2:g} mm, got {corner:g}"
         )
     x, y = checked_points([centre or (width / 2, height / 2)])[0]
-    half_width, half_height = width / 2 - corner, height / 2 - corner
-    if half_width == half_height == 0:
-        return Shape(Point(x, y), corner)
-    if half_width == 0 or half_height == 0:
-        return Shape(LineString([(x - half_width, y - half_height), (x + half_width, y + half_height)]), corner)
-    return Shape(shapely.box(x - half_width, y - half_height, x + half_width, y + half_height), corner)
+    left, right = _ends(x, width, corner)
+    top, bottom = _ends(y, height, corner)
+    if left == right and top == bottom:
+        return Shape(Point(left, top), corner)
+    if left == right or top == bottom:
+        return Shape(LineString([(left, top), (right, bottom)]), corner)
+    return Shape(shapely.box(left, top, right, bottom), corner)
 
 
-def polygon(points: list[tuple[float, float]]) -> Shape:
+def _ends(middle: float, length: float, less: float) -> tuple[float, float]:
+    """Give both ends of a length, shortened by `less` at each, as the decimals in which they were written would have them."""
+    centre, half = Decimal(repr(float(middle))), Decimal(repr(float(length))) / 2 - Decimal(repr(float(less)))
+    return float(centre - half), float(centre + half)
+
+
+def polygon(points: list[tuple[float, float]], holes: Sequence[list[tuple[float, float]]] = ()) -> Shape:
     """Make a polygon from its corners, in order, the ring open or closed.
 
     Args:
         points: at least three, mm, finite.
+        holes: corners of each hole, likewise; a hole lies within the polygon.
 
     Raises:
-        ValueError: fewer than three points, one not finite, or edges that cross (the crossing is named).
+        ValueError: fewer than three points, one not finite, edges that cross (the crossing is named), or a hole outside.
     """
     if len(points) < 3:
         raise ValueError(f"polygon must have at least 3 points, got {len(points)}")
-    return Shape(Polygon(checked_points(points)))
+    for hole in holes:
+        if len(hole) < 3:
+            raise ValueError(f"hole must have at least 3 points, got {len(hole)}")
+    return Shape(Polygon(checked_points(points), [checked_points(hole) for hole in holes]))
 
 
 def checked_points(points: list[tuple[float, float]]) -> Float[np.ndarray, "m 2"]:
