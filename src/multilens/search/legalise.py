@@ -24,12 +24,15 @@ def legalise(question: Question, layout: Layout) -> tuple[Layout, Certificate]:
         The layout as it would be stored, and its exact certificate, which says whether it is feasible.
     """
     low, high = (
-        torch.tensor(ends).double() for ends in zip(*(lens.aperture_radius for lens in question.lenses), strict=True)
+        torch.tensor(ends, dtype=torch.float64)
+        for ends in zip(*(lens.aperture_radius for lens in question.lenses), strict=True)
     )
-    near, far = (torch.tensor(ends).double().unsqueeze(-1) for ends in zip(*question.focus_range, strict=True))
+    near, far = (
+        torch.tensor(ends, dtype=torch.float64).unsqueeze(-1) for ends in zip(*question.focus_range, strict=True)
+    )
     locks = [lens.position or (None, None) for lens in question.lenses]
-    locked = torch.tensor([[place is not None for place in lock] for lock in locks])
-    place = torch.tensor([[place or 0.0 for place in lock] for lock in locks]).double()
+    locked = torch.tensor([[place is not None for place in lock] for lock in locks], dtype=torch.bool)
+    place = torch.tensor([[place or 0.0 for place in lock] for lock in locks], dtype=torch.float64)
     position = place.where(locked, layout.position.round(decimals=DECIMALS))
     focus = layout.focus.round(decimals=DECIMALS).clamp(min=near, max=far)
 

@@ -42,7 +42,8 @@ def scattered_starts(question: Question, variables: Variables, count: int, seed:
 def places_that_fit(question: Question, body_radius: float, seed: int) -> Float[Tensor, "p 2"]:
     """Give points of the back, evenly spread and in no order, around which a body of this radius (mm) fits; maybe none."""
     left, top, right, bottom = question.back.outline.bounds
-    corner, size = torch.tensor([left, top]).double(), torch.tensor([right - left, bottom - top]).double()
+    corner = torch.tensor([left, top], dtype=torch.float64)
+    size = torch.tensor([right - left, bottom - top], dtype=torch.float64)
     tried = corner + _sobol(2, PLACES_TRIED, seed) * size
     return tried[(quick_room(question.back)(tried) >= body_radius).all(-1)]
 
