@@ -103,5 +103,9 @@ class LensDefocus:
         return focused_sensitivity(depths, radius, focal_length.unsqueeze(-1), focus)
 
 
+CUES = {"pair_stereo": PairStereo, "lens_defocus": LensDefocus}
+"""Every cue that a file or a command line may name. What is not in this table is never imported or called."""
+
+
 def _column(numbers: list[float], layout: Layout) -> Float[Tensor, " n"]:
     return torch.tensor(numbers, dtype=layout.position.dtype, device=layout.position.device)

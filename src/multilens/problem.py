@@ -123,7 +123,9 @@ class Problem:
         object.__setattr__(self, "back", back)
         object.__setattr__(self, "lenses", tuple(lenses))
         object.__setattr__(self, "depths", depths)
-        object.__setattr__(self, "weights", weights / weights.sum())
+        # Weights that are shares already stay as they are to the bit, so that a problem read back from a file is the same one.
+        shares = weights if abs(weights.sum().item() - 1) < 1e-12 else weights / weights.sum()
+        object.__setattr__(self, "weights", shares)
         object.__setattr__(self, "cues", tuple(cues))
         object.__setattr__(self, "gap", float(gap))
 
