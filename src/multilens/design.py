@@ -1,37 +1,38 @@
 """A design: one layout that answers a question, with its proof and its origin."""
 
-from dataclasses import dataclass, field
-from math import nan, sqrt
+from dataclasses import dataclass
+from math import isclose, nan, sqrt
+from pathlib import Path
+from typing import Any
 
-from multilens.certificate import Certificate
+from multilens.certificate import Certificate, certify
 from multilens.convergence import Convergence
+from multilens.documents import document, document_content, read_text
+from multilens.fields import choice, number, record
+from multilens.geometry.pairs import pair_distance, pair_indices
 from multilens.layout import Layout
-from multilens.problem import Question
+from multilens.problem import Problem, Question
+from multilens.records import (
+    certificate_record,
+    convergence_record,
+    layout_record,
+    origin_record,
+    problem_record,
+    read_certificate,
+    read_convergence,
+    read_layout,
+    read_origin,
+    read_problem,
+)
+from multilens.storage import Origin, write_whole
 
 COMPLETE, OUT_OF_TIME, INFEASIBLE = "complete", "time limit", "infeasible"
 
+SCHEMA, SCHEMA_VERSION = "multilens.design", 1
+UNITS = {"length": "mm", "score": "mm^2", "rmse": "mm", "time": "s"}
 
-@dataclass(frozen=True)
-class Origin:
-    """What made a design: enough to make it again.
-
-    Args:
-        seed: of the starts.
-        starts: how many descended.
-        polished: how many of the best were polished at most.
-        penalty: name of the penalty.
-        time_limit: s, or None.
-        versions: of Python and the libraries.
-        commit: of the source, with a "+" if it was changed since; None where unknown.
-    """
-
-    seed: int
-    starts: int
-    polished: int
-    penalty: str
-    time_limit: float | None
-    versions: dict[str, str] = field(default_factory=dict)
-    commit: str | None = None
+SAME = 1e-12
+"""Largest relative difference between a stored score and the one that its layout has: a few roundings, no more."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,3 +71,171 @@ class Design:
     def rmse(self) -> float:
         """Root of the score: the root-mean-square error of depth, mm; NaN if infeasible or the score is negative."""
         return sqrt(self.score) if self.score >= 0 else nan
+
+    @property
+    def f_numbers(self) -> tuple[float, ...]:
+        """N = f / (2 A) of each lens."""
+        radii = self.layout.aperture_radius.tolist()
+        return tuple(lens.focal_length / (2 * radius) for lens, radius in zip(self.problem.lenses, radii, strict=True))
+
+    @property
+    def foci(self) -> tuple[tuple[float, ...], ...]:
+        """In-focus depth of each tier that each lens has, mm."""
+        rows = zip(self.layout.focus.tolist(), self.problem.lenses, strict=True)
+        return tuple(tuple(foci[: lens.tiers]) for foci, lens in rows)
+
+    @property
+    def longest_baseline(self) -> tuple[float, tuple[int, int]] | None:
+        """Distance of the two lenses farthest apart, mm, and the index of each, from 0; None for a single lens."""
+        if self.layout.count < 2:
+            return None
+        distance = pair_distance(self.layout.position)
+        first, second = pair_indices(self.layout.count)[:, distance.argmax()].tolist()
+        return distance.max().item(), (first, second)
+
+    def save(self, path: str | Path) -> None:
+        """Write the design to a JSON file, whole or not at all; the same design gives the same bytes.
+
+        What is written is first read back and proved feasible once more, so that what was saved can be loaded.
+
+        Args:
+            path: of the file, which is replaced if it is there.
+
+        Raises:
+            ValueError: the design is infeasible, or does not hold what it claims.
+            TypeError: the problem has a score or a cue of one's own: code is never written to a file.
+            OSError: the file cannot be written.
+        """
+        write_whole(Path(path), self.to_json())
+
+    @classmethod
+    def load(cls, path: str | Path) -> "Design":
+        """Read a design that was saved; its score and its feasibility are derived anew from the layout.
+
+        Every number is the same to the bit; the history of the search has 6 significant digits.
+
+        Args:
+            path: of the file.
+
+        Raises:
+            ValueError: the file is cut off, altered, of another version, or claims what does not hold; the file is named.
+            OSError: it cannot be read.
+        """
+        try:
+            return cls.from_json(read_text(Path(path)))
+        except ValueError as error:
+            raise ValueError(f"{path}: {error}") from None
+
+    def plot(self) -> Any:
+        """Draw the back, the errors and who wins at which depth on one sheet.
+
+        Returns:
+            A matplotlib Figure, of which `savefig` makes a file.
+        """
+        # Loaded only where something is drawn: it costs a second.
+        from multilens.plot.figures import overview_figure
+
+        return overview_figure(self.problem, self.layout)
+
+    def to_json(self) -> str:
+        """Give the text that `save` writes; raises what it raises, save for the OSError."""
+        if not self.feasible:
+            raise ValueError(f"design must be feasible to be saved: {self.reason}")
+        content = {
+            "units": UNITS,
+            "status": self.status,
+            "score": self.score,
+            "rmse": self.rmse,
+            "layout": layout_record(self.layout, self.problem.lenses),
+            "problem": problem_record(self.problem),
+            "certificate": certificate_record(self.certificate),
+            "origin": None if self.origin is None else origin_record(self.origin),
+            "convergence": None if self.convergence is None else convergence_record(self.convergence),
+        }
+        text = document(SCHEMA, SCHEMA_VERSION, content)
+        Design.from_json(text)
+        return text
+
+    @classmethod
+    def from_json(cls, text: str) -> "Design":
+        """Read the text that `to_json` gives.
+
+        Raises:
+            ValueError: as for `load`.
+        """
+        content = document_content(text, SCHEMA, SCHEMA_VERSION)
+        keys = ("units", "status", "score", "rmse", "layout", "problem", "certificate", "origin", "convergence")
+        fields = record(content, "design", keys)
+        if fields["units"] != UNITS:
+            raise ValueError(f"units must be {UNITS}, got {fields['units']!r:.80}")
+        status = choice(fields["status"], "status", (COMPLETE, OUT_OF_TIME))
+        problem = read_problem(fields["problem"], "problem")
+        layout = read_layout(fields["layout"], "layout", problem.lenses)
+        certificate = certify(problem.back, problem.lenses, problem.focus_range, layout, problem.gap)
+        design = cls(
+            problem,
+            layout,
+            status,
+            "",
+            certificate,
+            None if fields["convergence"] is None else read_convergence(fields["convergence"], "convergence"),
+            None if fields["origin"] is None else read_origin(fields["origin"], "origin"),
+        )
+        _refuse_unless_it_holds(design, fields)
+        return design
+
+    def __str__(self) -> str:
+        if not self.feasible:
+            return f"{self.status}: {self.reason}"
+        head = ("lens", "x (mm)", "y (mm)", "aperture radius (mm)", "f-number", "focus (mm)")
+        rows = [
+            (
+                str(i + 1),
+                f"{x:.3f}",
+                f"{y:.3f}",
+                f"{radius:.3f}",
+                f"{f_number:.2f}",
+                ", ".join(f"{z:.1f}" for z in foci),
+            )
+            for i, ((x, y), radius, f_number, foci) in enumerate(
+                zip(
+                    self.layout.position.tolist(),
+                    self.layout.aperture_radius.tolist(),
+                    self.f_numbers,
+                    self.foci,
+                    strict=True,
+                )
+            )
+        ]
+        width = [max(len(cell) for cell in column) for column in zip(head, *rows, strict=True)]
+        table = ["  ".join(map(str.rjust, row, width)).rstrip() for row in (head, *rows)]
+        facts = {"status": self.status}
+        if isinstance(self.problem, Problem):
+            facts["RMSE"] = f"{self.rmse:.6g} mm"
+        else:
+            facts["score"] = f"{self.score:.6g}"
+        if self.longest_baseline is not None:
+            baseline, (first, second) = self.longest_baseline
+            facts["longest baseline"] = f"{baseline:.3f} mm, lens {first + 1} to lens {second + 1}"
+        tightest = self.certificate.tightest
+        facts["tightest clearance"] = f"{tightest.room:.3g} mm, {tightest.what}"
+        wide = max(map(len, facts))
+        return "\n".join([*table, "", *(f"{name:<{wide}}  {fact}" for name, fact in facts.items())])
+
+
+def _refuse_unless_it_holds(design: Design, fields: dict[str, Any]) -> None:
+    """Hold what a file claims against what its layout gives."""
+    if not design.certificate.feasible:
+        tightest = design.certificate.tightest
+        raise ValueError(f"layout must be feasible, got {tightest.what} lacking {-tightest.room:.4g} mm")
+    for name, actual in (("score", design.score), ("rmse", design.rmse)):
+        stored = number(fields[name], name)
+        if not isclose(stored, actual, rel_tol=SAME):
+            raise ValueError(f"{name} must be the layout's, {actual!r}, got {stored!r}")
+    stored = read_certificate(fields["certificate"], "certificate").clearances
+    actual = design.certificate.clearances
+    if [(c.what, c.kept) for c in stored] != [(c.what, c.kept) for c in actual]:
+        raise ValueError("certificate must be the layout's, got other clearances")
+    for index, (claimed, found) in enumerate(zip(stored, actual, strict=True)):
+        if not isclose(claimed.room, found.room, rel_tol=SAME, abs_tol=SAME):
+            raise ValueError(f"certificate[{index}].room must be the layout's, {found.room!r}, got {claimed.room!r}")

@@ -1,32 +1,97 @@
-"""Files that are written whole or not at all, and the record of what made them."""
+"""Files and folders that are written whole or not at all, and the record of what made them."""
 
 import os
 import platform
+import shutil
 import subprocess
-import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
 from importlib.metadata import version
 from pathlib import Path
+from secrets import token_hex
 
 LIBRARIES = ("multilens", "torch", "numpy", "scipy", "shapely", "hydra-core")
+
+
+@dataclass(frozen=True)
+class Origin:
+    """What made a design: enough to make it again.
+
+    Args:
+        seed: of the starts.
+        starts: how many descended.
+        polished: how many of the best were polished at most.
+        penalty: name of the penalty.
+        time_limit: s, or None.
+        versions: of Python and the libraries.
+        commit: of the source, with a "+" if it was changed since; None where unknown.
+    """
+
+    seed: int
+    starts: int
+    polished: int
+    penalty: str
+    time_limit: float | None
+    versions: dict[str, str] = field(default_factory=dict)
+    commit: str | None = None
 
 
 def write_whole(path: Path, text: str) -> None:
     """Write a text file so that it is there complete or not at all, whatever interrupts: beside it, flushed, then renamed.
 
     Raises:
-        OSError: the folder cannot be written or is full; nothing is left behind then.
+        OSError: the folder cannot be written or is full; nothing is left behind then, and what was there before stays.
     """
-    handle, beside = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.", suffix=".partial")
+    beside = _beside(path)
     try:
-        with os.fdopen(handle, "w", encoding="utf-8") as file:
-            file.write(text)
-            file.flush()
-            os.fsync(file.fileno())
-        os.chmod(beside, 0o666 & ~_umask())
+        beside.write_text(text, encoding="utf-8", newline="\n")
+        _flush(beside)
         os.replace(beside, path)
     except BaseException:
-        Path(beside).unlink(missing_ok=True)
+        beside.unlink(missing_ok=True)
         raise
+
+
+@contextmanager
+def scratch_folder(folder: Path) -> Iterator[Path]:
+    """Give an empty hidden folder beside another, to be emptied by renames; it and what is still in it vanish in the end.
+
+    Raises:
+        OSError: the parent of the folder is missing or cannot be written.
+    """
+    beside = _beside(folder)
+    beside.mkdir()
+    try:
+        yield beside
+    finally:
+        shutil.rmtree(beside, ignore_errors=True)
+
+
+@contextmanager
+def folder_written_whole(folder: Path) -> Iterator[Path]:
+    """Give an empty folder to fill, which becomes `folder` when the block ends well and vanishes when it does not.
+
+    Args:
+        folder: where it goes; may be there already if it is empty. Its parent must exist.
+
+    Raises:
+        FileExistsError: something is there already.
+        OSError: the parent is missing, cannot be written or is full; nothing is left behind then.
+    """
+    folder = folder.resolve()
+    _refuse_unless_free(folder)
+    with scratch_folder(folder) as beside:
+        yield beside
+        for file in sorted(beside.rglob("*")):
+            _flush(file)
+        _flush(beside)
+        try:
+            os.replace(beside, folder)
+        except OSError:
+            # Somebody else may have filled it meanwhile: then that is what is wrong.
+            _refuse_unless_free(folder)
+            raise
 
 
 def versions() -> dict[str, str]:
@@ -50,7 +115,20 @@ def source_commit() -> str | None:
     return commit + ("+" if changed else "")
 
 
-def _umask() -> int:
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask
+def _refuse_unless_free(folder: Path) -> None:
+    if folder.exists() and not (folder.is_dir() and not any(folder.iterdir())):
+        raise FileExistsError(f"folder must be new or empty, got {folder}")
+
+
+def _beside(path: Path) -> Path:
+    """Give a hidden name of its own next to a path, on the same file system, so that a rename is one step."""
+    return path.with_name(f".{path.name}.partial-{token_hex(4)}")
+
+
+def _flush(path: Path) -> None:
+    """Wait until what was written has reached the disk, which is where a full one or a broken one shows."""
+    handle = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(handle)
+    finally:
+        os.close(handle)
