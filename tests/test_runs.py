@@ -1,0 +1,326 @@
+import csv
+import errno
+import json
+import os
+import sys
+from dataclasses import replace
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+from matplotlib.figure import Figure
+
+from multilens.back import Back
+from multilens.certificate import certify
+from multilens.cues import PairStereo
+from multilens.design import INFEASIBLE, Design
+from multilens.layout import Layout
+from multilens.lens import Lens
+from multilens.problem import Problem
+from multilens.runs import SweepRow, redraw, sweep_table, write_failure, write_run, write_sweep_table
+
+TEXTS = {"config.yaml", "design.json", "layout.csv", "run.log"}
+PICTURES = {f"{name}.{kind}" for name in ("layout", "overview") for kind in ("svg", "png")}
+
+
+@pytest.fixture(scope="module")
+def design():
+    lens = Lens(5.0, (0.5, 2.0), (200, 5000), clearance=1.0)
+    problem = Problem(Back.rectangle(40, 60), [lens, replace(lens, tiers=2)], [300.0, 900.0, 2000.0])
+    layout = Layout([[5.1, 6.2], [35.1, 46.2]], [1.25, 2.0], [[300.3, 300.3], [900.9, 2000.1]])
+    certificate = certify(problem.back, problem.lenses, problem.focus_range, layout, problem.gap)
+    return Design(problem, layout, "complete", "", certificate)
+
+
+@pytest.fixture
+def sketches(monkeypatch):
+    """Pictures that cost nothing; `sketches.error` is raised after the first of them is written."""
+
+    class Sketches(ModuleType):
+        error: BaseException | None = None
+        text = "a picture"
+
+    module = Sketches("multilens.plot.figures")
+
+    def save_figures(figures, folder):
+        for name in figures:
+            for kind in ("svg", "png"):
+                (folder / f"{name}.{kind}").write_text(f"{module.text} of {name}")
+                if module.error is not None:
+                    raise module.error
+
+    module.design_figures = lambda problem, layout, convergence: {"layout": Figure()}
+    module.overview_figure = lambda problem, layout: Figure()
+    module.save_figures = save_figures
+    monkeypatch.setitem(sys.modules, "multilens.plot.figures", module)
+    return module
+
+
+def names(folder):
+    return {path.name for path in folder.iterdir()}
+
+
+def contents(folder):
+    return {path.name: path.read_bytes() for path in folder.iterdir()}
+
+
+def test_a_run_leaves_exactly_its_files(tmp_path, design, sketches):
+    write_run(tmp_path / "run", design, "seed: 0\n", "done\n")
+    assert names(tmp_path) == {"run"}
+    assert names(tmp_path / "run") == TEXTS | PICTURES
+
+
+def test_a_run_keeps_config_and_log_as_they_were(tmp_path, design, sketches):
+    write_run(tmp_path / "run", design, "seed: 0\nname: Müller\n", "done\n")
+    assert (tmp_path / "run" / "config.yaml").read_bytes() == "seed: 0\nname: Müller\n".encode()
+    assert (tmp_path / "run" / "run.log").read_text() == "done\n"
+
+
+def test_the_design_of_a_run_is_the_one_that_was_written(tmp_path, design, sketches):
+    write_run(tmp_path / "run", design, "", "")
+    assert Design.load(tmp_path / "run" / "design.json").to_json() == design.to_json()
+
+
+def test_the_same_run_leaves_the_same_bytes(tmp_path, design, sketches):
+    for name in ("one", "two"):
+        write_run(tmp_path / name, design, "seed: 0\n", "done\n", ["a=1"])
+    assert contents(tmp_path / "one") == contents(tmp_path / "two")
+
+
+def test_the_layout_is_a_table_that_other_programs_read(tmp_path, design, sketches):
+    write_run(tmp_path / "run", design, "", "")
+    with (tmp_path / "run" / "layout.csv").open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert rows == [
+        {
+            "lens": "1",
+            "x_mm": "5.1",
+            "y_mm": "6.2",
+            "aperture_radius_mm": "1.25",
+            "f_number": "2.0",
+            "focus_mm": "300.3",
+            "body_radius_mm": "2.25",
+            "focal_length_mm": "5.0",
+        },
+        {
+            "lens": "2",
+            "x_mm": "35.1",
+            "y_mm": "46.2",
+            "aperture_radius_mm": "2.0",
+            "f_number": "1.25",
+            "focus_mm": "900.9;2000.1",
+            "body_radius_mm": "3.0",
+            "focal_length_mm": "5.0",
+        },
+    ]
+
+
+def test_a_run_goes_into_an_empty_folder(tmp_path, design, sketches):
+    (tmp_path / "run").mkdir()
+    write_run(tmp_path / "run", design, "", "")
+    assert names(tmp_path / "run") == TEXTS | PICTURES
+
+
+def test_a_run_is_not_written_over_another(tmp_path, design, sketches):
+    write_run(tmp_path / "run", design, "the first", "")
+    before = contents(tmp_path / "run")
+    with pytest.raises(FileExistsError, match=r"^folder must be new or empty, got .*run$"):
+        write_run(tmp_path / "run", design, "the second", "")
+    assert contents(tmp_path / "run") == before
+
+
+def test_an_infeasible_design_leaves_no_run(tmp_path, design, sketches):
+    with pytest.raises(ValueError, match="no room"):
+        write_run(tmp_path / "run", replace(design, status=INFEASIBLE, reason="no room"), "", "")
+    assert not names(tmp_path)
+
+
+class Lidar(PairStereo):
+    """A cue of somebody else's."""
+
+
+def test_a_foreign_cue_leaves_no_run(tmp_path, design, sketches):
+    foreign = Problem(design.problem.back, design.problem.lenses, [300.0], cues=[Lidar()])
+    with pytest.raises(TypeError, match="Lidar"):
+        write_run(tmp_path / "run", replace(design, problem=foreign), "", "")
+    assert not names(tmp_path)
+
+
+@pytest.mark.parametrize("error", [KeyboardInterrupt(), SystemExit(143), OSError(errno.ENOSPC, "full"), MemoryError()])
+@pytest.mark.parametrize("there", [False, True], ids=["new", "empty"])
+def test_a_run_that_ends_while_it_draws_leaves_nothing(tmp_path, design, sketches, error, there):
+    if there:
+        (tmp_path / "run").mkdir()
+    sketches.error = error
+    with pytest.raises(type(error)):
+        write_run(tmp_path / "run", design, "", "")
+    assert [path.name for path in tmp_path.rglob("*")] == ["run"] * there
+
+
+def test_a_disk_that_fills_up_at_any_file_leaves_nothing(tmp_path, design, sketches, monkeypatch):
+    flushes = 0
+
+    def fills_up(handle):
+        nonlocal flushes
+        flushes -= 1
+        if flushes < 0:
+            raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(os, "fsync", fills_up)
+    for allowed in range(len(TEXTS | PICTURES)):
+        flushes = allowed
+        with pytest.raises(OSError, match="No space left"):
+            write_run(tmp_path / "run", design, "", "")
+        assert not names(tmp_path)
+
+
+@pytest.mark.parametrize("file", sorted(TEXTS))
+def test_a_text_that_cannot_be_written_leaves_nothing(tmp_path, design, sketches, monkeypatch, file):
+    write_text = Path.write_text
+
+    def fills_up(path, *given, **named):
+        if path.name == file:
+            raise OSError(errno.ENOSPC, "No space left on device")
+        return write_text(path, *given, **named)
+
+    monkeypatch.setattr(Path, "write_text", fills_up)
+    with pytest.raises(OSError, match="No space left"):
+        write_run(tmp_path / "run", design, "", "")
+    assert not names(tmp_path)
+
+
+def test_redrawing_changes_the_pictures_alone(tmp_path, design, sketches):
+    run = tmp_path / "run"
+    write_run(run, design, "seed: 0\n", "done\n")
+    before = contents(run)
+    sketches.text = "a new picture"
+    redraw(run)
+    after = contents(run)
+    assert {name for name in after if after[name] != before[name]} == PICTURES
+    assert names(run) == TEXTS | PICTURES
+    assert names(tmp_path) == {"run"}
+
+
+def test_redrawing_needs_the_design_alone(tmp_path, design, sketches):
+    design.save(tmp_path / "design.json")
+    redraw(tmp_path)
+    assert names(tmp_path) == PICTURES | {"design.json"}
+
+
+def test_redrawing_a_damaged_design_names_the_file(tmp_path, sketches):
+    (tmp_path / "design.json").write_text('{"schema": "multilens.design"')
+    with pytest.raises(ValueError, match=r"design\.json: must be whole JSON"):
+        redraw(tmp_path)
+    assert names(tmp_path) == {"design.json"}
+
+
+def test_redrawing_that_is_interrupted_keeps_the_old_pictures(tmp_path, design, sketches):
+    write_run(tmp_path / "run", design, "", "")
+    before = contents(tmp_path / "run")
+    sketches.text, sketches.error = "a new picture", KeyboardInterrupt()
+    with pytest.raises(KeyboardInterrupt):
+        redraw(tmp_path / "run")
+    assert contents(tmp_path / "run") == before
+    assert names(tmp_path) == {"run"}
+
+
+def test_a_failure_leaves_its_reason(tmp_path):
+    write_failure(tmp_path / "3", "infeasible", "no room", "seed: 0\n", "sorry\n", ["lenses.count=9"])
+    assert names(tmp_path / "3") == {"failure.json", "config.yaml", "run.log", "overrides.json"}
+    assert json.loads((tmp_path / "3" / "failure.json").read_text()) == {"status": "infeasible", "reason": "no room"}
+
+
+def test_a_failure_on_a_full_disk_leaves_nothing(tmp_path, monkeypatch):
+    def fills_up(handle):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(os, "fsync", fills_up)
+    with pytest.raises(OSError, match="No space left"):
+        write_failure(tmp_path / "3", "infeasible", "no room", "", "")
+    assert not names(tmp_path)
+
+
+@pytest.fixture
+def sweep(tmp_path, design, sketches):
+    for job in (0, 10, 2):
+        write_run(tmp_path / str(job), design, "", "", [f"lenses.count={job}", "depth=room"])
+    write_failure(tmp_path / "3", "infeasible", "no room | at all", "", "", ["lenses.count=9", "gap=[1,2]"])
+    (tmp_path / "4").mkdir()
+    (tmp_path / "5").mkdir()
+    (tmp_path / "5" / "design.json").write_text("{")
+    (tmp_path / ".6.partial-0000").mkdir()
+    (tmp_path / "7").write_text("no folder")
+    return tmp_path
+
+
+def test_a_sweep_is_gathered_in_the_order_of_its_jobs(sweep):
+    rows = sweep_table(sweep)
+    assert [(row.job, row.status) for row in rows] == [
+        (0, "complete"),
+        (2, "complete"),
+        (3, "infeasible"),
+        (4, "unfinished"),
+        (5, "unreadable"),
+        (10, "complete"),
+    ]
+
+
+def test_a_row_holds_what_came_of_its_job(sweep, design):
+    found, failed = (sweep_table(sweep)[index] for index in (1, 2))
+    assert found == SweepRow(
+        2, ("lenses.count=2", "depth=room"), "complete", "", 2, design.score, design.score**0.5, 50.0
+    )
+    assert failed == SweepRow(3, ("lenses.count=9", "gap=[1,2]"), "infeasible", "no room | at all")
+
+
+def test_the_table_of_a_sweep_has_a_column_for_every_key(sweep, design):
+    write_sweep_table(sweep)
+    with (sweep / "table.csv").open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert list(rows[0]) == [
+        "job",
+        "lenses.count",
+        "depth",
+        "gap",
+        "lens_count",
+        "status",
+        "score_mm2",
+        "rmse_mm",
+        "longest_baseline_mm",
+        "reason",
+    ]
+    assert [row["lenses.count"] for row in rows] == ["0", "2", "9", "", "", "10"]
+    assert rows[2]["gap"] == "[1,2]"
+    assert float(rows[1]["score_mm2"]) == design.score
+    assert rows[4]["reason"].startswith(str(sweep / "5" / "design.json"))
+
+
+def test_the_table_to_read_is_a_table(sweep):
+    write_sweep_table(sweep)
+    head, rule, *rows = (sweep / "table.md").read_text().splitlines()
+    assert {line.replace(r"\|", "").count("|") for line in (head, rule, *rows)} == {11}
+    assert "no room \\| at all" in rows[2]
+
+
+@pytest.mark.parametrize("damage", ['{"status": "infeasible"}', "[" * 100_000, "[1]", "\x00"])
+def test_a_damaged_failure_does_not_keep_the_others_from_the_table(sweep, damage):
+    (sweep / "3" / "failure.json").write_text(damage)
+    rows = sweep_table(sweep)
+    assert [row.status for row in rows][1:3] == ["complete", "unreadable"]
+    assert "\n" not in rows[2].reason
+
+
+def test_a_run_draws_its_pictures(tmp_path, design):
+    write_run(tmp_path / "run", design, "", "")
+    pictures = names(tmp_path / "run") - TEXTS
+    assert {name.partition(".")[0] for name in pictures} == {"layout", "errors", "overview"}
+    for name in pictures:
+        start = b"\x89PNG" if name.endswith(".png") else b"<?xml"
+        assert (tmp_path / "run" / name).read_bytes().startswith(start)
+
+
+def test_a_run_redrawn_is_the_same_to_the_byte(tmp_path, design):
+    write_run(tmp_path / "run", design, "", "")
+    before = contents(tmp_path / "run")
+    redraw(tmp_path / "run")
+    assert contents(tmp_path / "run") == before
