@@ -1,0 +1,204 @@
+"""From a configuration to the question it asks. Only `build_problem` needs torch."""
+
+import re
+from collections.abc import Callable, Sequence
+from copy import deepcopy
+from math import isfinite
+from typing import TYPE_CHECKING, Any
+
+from omegaconf import DictConfig, OmegaConf, open_dict
+
+from multilens.app.refusal import RefusedError, one_line, refused_at
+from multilens.app.schema import BackConfig, Config, CueName, LensConfig, LensesConfig, ShapeConfig, ShapeKind, Spacing
+from multilens.back import Back
+from multilens.geometry import shape
+from multilens.geometry.shape import Shape
+from multilens.lens import Lens
+
+if TYPE_CHECKING:
+    from multilens.problem import Problem
+
+MOST_LENSES = 64
+MOST_KEEP_OUTS = 64
+MOST_POINTS = 10_000
+MOST_DEPTHS = 4096
+MOST_STARTS = 65_536
+NAME = re.compile(r"[A-Za-z0-9._-]{1,100}")
+KEEP_OUT_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9 ._-]{0,99}")
+
+Pair = tuple[float, float]
+
+
+def typed(config: DictConfig) -> Config:
+    """Give a composed configuration as the schema's own dataclasses, whatever it was composed from.
+
+    Raises:
+        OmegaConfBaseException: a key is unknown, missing or of the wrong type.
+    """
+    job = deepcopy(config)
+    with open_dict(job):
+        job.pop("hydra", None)
+    given = OmegaConf.to_object(OmegaConf.merge(OmegaConf.structured(Config), job))
+    assert isinstance(given, Config)
+    return given
+
+
+def check(config: Config) -> None:
+    """Build everything that can be built without torch, and check the ranges of the rest.
+
+    Raises:
+        RefusedError: something is out of its range or does not go together.
+    """
+    if not NAME.fullmatch(config.name) or ".." in config.name or config.name == ".":
+        raise RefusedError(f"name must be letters, digits, '.', '_' and '-' without '..', got {config.name!r}")
+    build_back(config.back)
+    build_lenses(config.lenses)
+    near, far = config.depth.near, config.depth.far
+    if not (isfinite(near) and near > 0):
+        raise RefusedError(f"depth.near must be > 0 mm and finite, got {near:g}")
+    if not (isfinite(far) and far > near):
+        raise RefusedError(f"depth.far must be > depth.near = {near:g} mm and finite, got {far:g}")
+    _refuse_unless_count("depth.count", config.depth.count, 2, MOST_DEPTHS)
+    if not config.cues.names or len(set(config.cues.names)) < len(config.cues.names):
+        given = ", ".join(cue.name for cue in config.cues.names) or "none"
+        raise RefusedError(f"cues.names must be at least one of stereo and defocus, each once, got {given}")
+    _refuse_unless_count("search.starts", config.search.starts, 1, MOST_STARTS)
+    _refuse_unless_count("search.polished", config.search.polished, 1, MOST_STARTS)
+    _refuse_unless_count("search.seed", config.search.seed, 0, 2**31 - 1)
+    limit = config.search.time_limit
+    if limit is not None and not (isfinite(limit) and limit > 0):
+        raise RefusedError(f"search.time_limit must be > 0 s and finite, or null for none, got {limit:g}")
+
+
+def build_back(config: BackConfig) -> Back:
+    """Make the back, its keep-outs in the order of the configuration."""
+    with refused_at("back.outline"):
+        back = Back(_build_shape("back.outline", config.outline))
+    if len(config.keep_outs) > MOST_KEEP_OUTS:
+        raise RefusedError(f"back.keep_outs must be at most {MOST_KEEP_OUTS}, got {len(config.keep_outs)}")
+    for name, keep_out in config.keep_outs.items():
+        if not KEEP_OUT_NAME.fullmatch(name):
+            raise RefusedError(
+                f"back.keep_outs: a name must be letters, digits, ' ', '.', '_' and '-', a letter or digit first, got {name!r}"
+            )
+        key = f"back.keep_outs.{name}"
+        with refused_at(key):
+            back = back.keep_out(name, _build_shape(f"{key}.shape", keep_out.shape), keep_out.clearance)
+    return back
+
+
+def build_lenses(config: LensesConfig) -> tuple[Lens, ...]:
+    """Make the lenses: `count` times `lens`, or `each`."""
+    if not (isfinite(config.gap) and config.gap >= 0):
+        raise RefusedError(f"lenses.gap must be >= 0 mm and finite, got {config.gap:g}")
+    if config.each is not None:
+        if config.count is not None or config.lens is not None:
+            raise RefusedError(
+                "lenses.each lists the lenses one by one: lenses.count and lenses.lens must be null beside it"
+            )
+        _refuse_unless_count("lenses.each: the number of lenses", len(config.each), 1, MOST_LENSES)
+        return tuple(_build_lens(f"lenses.each.{index}", lens) for index, lens in enumerate(config.each))
+    if config.lens is None or config.count is None:
+        raise RefusedError("lenses must have count and lens, or each, got neither")
+    _refuse_unless_count("lenses.count", config.count, 1, MOST_LENSES)
+    return (_build_lens("lenses.lens", config.lens),) * config.count
+
+
+def build_problem(config: Config) -> "Problem":
+    """Make the question; this is where torch comes in.
+
+    Raises:
+        RefusedError: something is out of its range or does not go together.
+    """
+    from multilens.cues import LensDefocus, PairStereo
+    from multilens.problem import Problem, linear_depths, log_depths
+
+    cues = {CueName["stereo"]: PairStereo, CueName["defocus"]: LensDefocus}
+    depths = {Spacing["linear"]: linear_depths, Spacing["log"]: log_depths}
+    back, lenses = build_back(config.back), build_lenses(config.lenses)
+    with refused_at("depth"):
+        range_of_depths = depths[config.depth.spacing](config.depth.near, config.depth.far, config.depth.count)
+    with refused_at("cues"):
+        named = [cues[name]() for name in config.cues.names]
+        return Problem(back, lenses, range_of_depths, cues=named, gap=config.lenses.gap)
+
+
+def _build_lens(key: str, config: LensConfig) -> Lens:
+    others: dict[str, Any] = {
+        "clearance": config.clearance,
+        "disparity_noise": config.disparity_noise,
+        "blur_noise": config.blur_noise,
+        "tiers": config.tiers,
+        "focus": None if config.focus is None else _pair(f"{key}.focus", config.focus),
+        "position": None if config.position is None else _pair(f"{key}.position", config.position),
+    }
+    if (config.aperture_radius is None) == (config.f_number is None):
+        given = "neither" if config.f_number is None else "both"
+        raise RefusedError(f"{key} must have either aperture_radius or f_number, got {given}")
+    with refused_at(key):
+        if config.f_number is not None:
+            return Lens.from_f_number(config.focal_length, _pair(f"{key}.f_number", config.f_number), **others)
+        return Lens(config.focal_length, _pair(f"{key}.aperture_radius", config.aperture_radius or []), **others)
+
+
+def _rectangle(key: str, config: ShapeConfig) -> Shape:
+    centre = None if config.centre is None else _pair(f"{key}.centre", config.centre)
+    return shape.rectangle(config.width or 0, config.height or 0, centre, config.corner or 0)
+
+
+def _disc(key: str, config: ShapeConfig) -> Shape:
+    centre = (0.0, 0.0) if config.centre is None else _pair(f"{key}.centre", config.centre)
+    return shape.disc(centre, config.radius or 0)
+
+
+def _polygon(key: str, config: ShapeConfig) -> Shape:
+    points = _ring(f"{key}.points", config.points)
+    holes = [_ring(f"{key}.holes.{index}", hole) for index, hole in enumerate(config.holes or [])]
+    return shape.polygon(points, holes)
+
+
+def _ring(key: str, points: Any) -> list[Pair]:
+    if not isinstance(points, list):
+        raise RefusedError(f"{key} must be a list of points, [[x, y], ...], got {points!r}")
+    if len(points) > MOST_POINTS:
+        raise RefusedError(f"{key} must be at most {MOST_POINTS} points, got {len(points)}")
+    return [_point(f"{key}.{index}", point) for index, point in enumerate(points)]
+
+
+def _point(key: str, point: Any) -> Pair:
+    if not isinstance(point, list) or not all(type(number) in (int, float) for number in point):
+        raise RefusedError(one_line(f"{key} must be two numbers, got {point!r}"))
+    return _pair(key, [float(number) for number in point])
+
+
+_SHAPES: dict[ShapeKind, tuple[Callable[[str, ShapeConfig], Shape], set[str], set[str]]] = {
+    ShapeKind["rectangle"]: (_rectangle, {"width", "height"}, {"centre"}),
+    ShapeKind["rounded_rectangle"]: (_rectangle, {"width", "height", "corner"}, {"centre"}),
+    ShapeKind["disc"]: (_disc, {"radius"}, {"centre"}),
+    ShapeKind["polygon"]: (_polygon, {"points"}, {"holes"}),
+}
+"""What makes each kind of shape, the fields that it needs and those that it may have."""
+
+
+def _build_shape(key: str, config: ShapeConfig) -> Shape:
+    make, needed, allowed = _SHAPES[config.kind]
+    given = {name for name, value in vars(config).items() if value is not None} - {"kind"}
+    for name in sorted(needed - given):
+        raise RefusedError(f"{key}.{name} is missing: a {config.kind.name} needs {', '.join(sorted(needed))}")
+    for name in sorted(given - needed - allowed):
+        raise RefusedError(
+            f"{key}.{name}: a {config.kind.name} takes {', '.join(sorted(needed | allowed))}, got {name}"
+        )
+    with refused_at(key):
+        return make(key, config)
+
+
+def _pair(key: str, numbers: Sequence[float | None]) -> Any:
+    if len(numbers) != 2:
+        raise RefusedError(f"{key} must be two numbers, got {len(numbers)} of them")
+    return tuple(numbers)
+
+
+def _refuse_unless_count(key: str, count: int, least: int, most: int) -> None:
+    if not least <= count <= most:
+        raise RefusedError(f"{key} must be from {least} to {most}, got {count}")

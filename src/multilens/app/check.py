@@ -1,0 +1,169 @@
+"""The whole command line checked before Hydra runs anything: no folder is made for what cannot be run."""
+
+from argparse import Namespace
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from hydra import compose
+from hydra.core.config_loader import ConfigLoader
+from hydra.core.hydra_config import HydraConfig
+from hydra.core.override_parser.overrides_parser import OverridesParser
+from hydra.core.override_parser.types import Glob, IntervalSweep, Override
+from omegaconf import DictConfig, OmegaConf
+
+from multilens.app import build
+from multilens.app.compose import CONFIG_NAME, config_loader, open_hydra
+from multilens.app.keys import is_known, no_such_option, unknown_key
+from multilens.app.refusal import RefusedError, one_line
+from multilens.app.telling import told_in_one_line
+from multilens.app.yaml_limits import refuse_wild_folders
+
+CALLABLE_KEYS = ("_target_", "()", "class")
+"""Keys of Hydra's own configuration that make it import and call what they name."""
+
+CALLABLES = (
+    "multilens.app.sweep.SweepTable",
+    "logging.FileHandler",
+    "logging.StreamHandler",
+    "colorlog.ColoredFormatter",
+)
+CALLABLE_PACKAGES = ("hydra._internal.core_plugins.", "hydra_plugins.", "optuna.samplers.")
+"""What those keys may name: our table, Hydra's launchers and sweepers, and its logging to the console: a run folder has its own."""
+
+
+def check_command_line(arguments: Namespace) -> None:
+    """Compose what would be run, build it as far as torch is not needed, and look at the folder it would go to.
+
+    For a sweep every value of every swept key is looked at, each with the first values of the others.
+
+    Args:
+        arguments: as Hydra's parser gives them.
+
+    Raises:
+        RefusedError: something cannot be run; one line.
+    """
+    refuse_wild_folders(arguments)
+    with open_hydra(arguments), told_in_one_line():
+        loader = config_loader()
+        overrides = _parsed(arguments.overrides, loader)
+        config_name = arguments.config_name or CONFIG_NAME
+        swept = [override for override in overrides if override.is_sweep_override()]
+        first = _composed(config_name, [_choices(override, loader)[0] for override in overrides])
+        if not (arguments.multirun or (first.hydra.mode is not None and first.hydra.mode.name == "MULTIRUN")):
+            for override in swept:
+                raise RefusedError(
+                    f"{_line(override)}: several values need multilens -m, or [...] around them where a list is meant"
+                )
+            _refuse_used_folder("hydra.run.dir", first)
+        else:
+            _refuse_used_folder("hydra.sweep.dir", first)
+            swept += _swept_in_files(first, loader)
+        for line in _each_value(overrides, swept, loader):
+            build.check(build.typed(_composed(config_name, line)))
+
+
+def _parsed(lines: list[str], loader: ConfigLoader) -> list[Override]:
+    overrides = OverridesParser.create(config_loader=loader).parse_overrides(lines)
+    for override in overrides:
+        if "_target_" in _line(override):
+            key = override.key_or_group
+            raise RefusedError(
+                one_line(f"{_line(override)}: _target_ is an unknown key, {key} can name no class or function")
+            )
+        key = override.key_or_group
+        if key.startswith(("hydra.job_logging", "hydra.hydra_logging")):
+            raise RefusedError(
+                f"{_line(override)}: what Hydra logs is not set key by key, the run folder has a log of its own"
+            )
+        if key.split(".")[0].split("/")[0] == "hydra":
+            continue
+        options = loader.get_group_options(key) if "." not in key else []
+        if options and not isinstance(override.value(), dict):
+            for choice in _named(override, loader):
+                if "/" not in choice and choice not in options:
+                    raise RefusedError(no_such_option(key, choice, options))
+        elif not is_known(key.split(".")):
+            raise RefusedError(unknown_key(key, _line(override)))
+    return overrides
+
+
+def _line(override: Override) -> str:
+    return override.input_line or override.key_or_group
+
+
+def _named(override: Override, loader: ConfigLoader) -> list[str]:
+    if override.value() is None or override.is_delete():
+        return []
+    if override.is_sweep_override():
+        return [line.partition("=")[2] for line in _choices(override, loader)]
+    value = override.value()
+    return [str(one) for one in value] if isinstance(value, list) else [str(value)]
+
+
+def _choices(override: Override, loader: ConfigLoader) -> list[str]:
+    """Give the override once for each value that it sweeps; of an interval, for its two ends."""
+    if not override.is_sweep_override():
+        return [_line(override)]
+    value, key = override.value(), override.get_key_element()
+    if isinstance(value, Glob):
+        names = value.filter(loader.get_group_options(override.key_or_group))
+        if not names:
+            raise RefusedError(f"{_line(override)}: matches no option of {override.key_or_group}")
+    elif isinstance(value, IntervalSweep):
+        names = [str(value.start), str(value.end)]
+    else:
+        names = list(override.sweep_string_iterator())
+    return [f"{key}={name}" for name in names]
+
+
+def _swept_in_files(config: DictConfig, loader: ConfigLoader) -> list[Override]:
+    params = OmegaConf.select(config, "hydra.sweeper.params")
+    if not isinstance(params, DictConfig) or "basic_sweeper" not in config.hydra.sweeper._target_:
+        return []
+    return _parsed([f"{key}={value}" for key, value in params.items()], loader)
+
+
+def _each_value(overrides: list[Override], swept: list[Override], loader: ConfigLoader) -> Iterator[list[str]]:
+    base = {override.get_key_element(): _choices(override, loader)[0] for override in [*overrides, *swept]}
+    yield list(base.values())
+    for override in swept:
+        for line in _choices(override, loader)[1:]:
+            yield list((base | {override.get_key_element(): line}).values())
+
+
+def _composed(config_name: str, lines: list[str]) -> DictConfig:
+    config = compose(config_name, lines, return_hydra_config=True)
+    if config.hydra.output_subdir is not None:
+        raise RefusedError(
+            f"hydra.output_subdir must be null, the run folder is ours alone, got {config.hydra.output_subdir}"
+        )
+    _refuse_foreign_callables("hydra", OmegaConf.to_container(config.hydra, resolve=False))
+    return config
+
+
+def _refuse_foreign_callables(key: str, node: Any) -> None:
+    children = node.items() if isinstance(node, dict) else enumerate(node) if isinstance(node, list) else ()
+    for name, child in children:
+        below = f"{key}.{name}"
+        if name in CALLABLE_KEYS and not (child in CALLABLES or str(child).startswith(CALLABLE_PACKAGES)):
+            raise RefusedError(
+                one_line(f"{below} must be one of Hydra's launchers, sweepers or console log handlers, got {child}")
+            )
+        _refuse_foreign_callables(below, child)
+
+
+def _refuse_used_folder(key: str, config: DictConfig) -> None:
+    # Where a folder goes may be told in terms of Hydra's own configuration, as during a run.
+    before = HydraConfig.instance().cfg
+    HydraConfig.instance().set_config(config)
+    try:
+        # The name is part of the folder's: it is looked at before the folder is.
+        build.check(build.typed(config))
+        folder = Path(str(OmegaConf.select(config, key)))
+    finally:
+        HydraConfig.instance().cfg = before
+    if folder.is_dir() and any(folder.iterdir()):
+        raise RefusedError(f"{key} must be a new or empty folder, {folder} holds something already")
+    if folder.exists() and not folder.is_dir():
+        raise RefusedError(f"{key} must be a new or empty folder, {folder} is a file")

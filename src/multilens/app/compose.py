@@ -1,0 +1,48 @@
+"""Where the configuration lies, and Hydra set up to compose it as its own command line would."""
+
+from argparse import Namespace
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from hydra import version
+from hydra._internal.hydra import Hydra
+from hydra._internal.utils import create_config_search_path
+from hydra.core.config_loader import ConfigLoader
+from hydra.core.config_search_path import SearchPathQuery
+from hydra.core.global_hydra import GlobalHydra
+
+from multilens.app.schema import register
+
+CONFIG_NAME = "config"
+VERSION_BASE = "1.3"
+
+
+def config_folder() -> Path:
+    """Give the folder of the presets: inside the package when installed from a wheel, beside src in a checkout."""
+    here = Path(__file__).resolve()
+    packaged = here.parents[1] / "conf"
+    return packaged if packaged.is_dir() else here.parents[3] / "conf"
+
+
+@contextmanager
+def open_hydra(arguments: Namespace) -> Iterator[None]:
+    """Set Hydra up with the search path that these arguments ask for, and clear it afterwards."""
+    version.setbase(VERSION_BASE)
+    register()
+    search_path = create_config_search_path(arguments.config_path or str(config_folder()))
+    if arguments.config_dir:
+        search_path.prepend(
+            "command-line", f"file://{Path(arguments.config_dir).absolute()}", SearchPathQuery(provider="schema")
+        )
+    GlobalHydra.instance().clear()
+    try:
+        Hydra.create_main_hydra2("multilens", search_path)
+        yield
+    finally:
+        GlobalHydra.instance().clear()
+
+
+def config_loader() -> ConfigLoader:
+    """Give the loader of the Hydra that is set up."""
+    return GlobalHydra.instance().config_loader()

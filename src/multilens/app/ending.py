@@ -1,0 +1,16 @@
+"""How a command ends: its exit codes, and the one line on stderr when it is not done."""
+
+import sys
+
+from multilens.app.refusal import one_line
+
+DONE, SYSTEM_FAILED, BAD_INPUT, NOTHING_FOUND, INTERRUPTED, TERMINATED = 0, 1, 2, 3, 130, 143
+
+
+class TerminatedError(BaseException):
+    """SIGTERM arrived; like a KeyboardInterrupt it is no error that a library should handle."""
+
+
+def tell(reason: object) -> None:
+    """Say on stderr, in one line, why the command is not done."""
+    print(f"multilens: {one_line(str(reason))}", file=sys.stderr, flush=True)

@@ -1,0 +1,154 @@
+"""One job: search, print the design and write its folder. Hydra calls it, in this process or in a worker's.
+
+What costs time to load is loaded inside the functions: Hydra needs this module to answer `--help`, too.
+"""
+
+import traceback
+from pathlib import Path
+from time import monotonic
+from typing import TYPE_CHECKING, NoReturn
+
+from hydra.core.hydra_config import HydraConfig
+from hydra.types import RunMode
+from omegaconf import DictConfig, OmegaConf
+
+from multilens.app.ending import BAD_INPUT, NOTHING_FOUND, SYSTEM_FAILED, tell
+from multilens.app.refusal import RefusedError, one_line
+from multilens.app.schema import PenaltyName
+
+if TYPE_CHECKING:
+    from multilens.design import Design
+
+
+class NothingFoundError(Exception):
+    """The search ended without a design; the message is the reason."""
+
+
+def run_job(config: DictConfig) -> None:
+    """Make the design that a composed configuration asks for and write its folder, whole or not at all.
+
+    In a sweep a job that finds nothing, or fails, leaves a folder that says why, so that the sweep goes on and its table
+    is complete.
+
+    Args:
+        config: composed, without Hydra's own part.
+
+    Raises:
+        SystemExit: after one line on stderr: nothing was found (3), the configuration cannot be run (2), both not in a sweep,
+            or the folder cannot be written (1).
+        OSError: the folder cannot be written by a worker of a sweep.
+    """
+    hydra = HydraConfig.get()
+    folder = Path(hydra.runtime.output_dir)
+    in_sweep = hydra.mode == RunMode.MULTIRUN
+    log: list[str] = [" ".join(["multilens", *hydra.overrides.task])]
+    # Workers of other launchers share one terminal: a bar of each would overwrite the others'.
+    in_process = not in_sweep or "basic_launcher" in hydra.launcher._target_
+    try:
+        if in_sweep:
+            _run_sweep_job(config, folder, list(hydra.overrides.task), log, in_process)
+        else:
+            _run_alone(config, folder, log)
+    except OSError as error:
+        if not in_process:
+            raise
+        _leave(SYSTEM_FAILED, error)
+    finally:
+        _remove_if_empty(folder)
+
+
+def _run_alone(config: DictConfig, folder: Path, log: list[str]) -> None:
+    from multilens.runs import write_run
+
+    try:
+        design = _search(config, log, visible=True)
+    except NothingFoundError as reason:
+        _leave(NOTHING_FOUND, reason)
+    except RefusedError as refusal:
+        _leave(BAD_INPUT, refusal)
+    print(design)
+    write_run(folder, design, _text(config), _lines(log))
+    for path in sorted(folder.iterdir()):
+        print(_from_here(path))
+
+
+def _run_sweep_job(config: DictConfig, folder: Path, overrides: list[str], log: list[str], visible: bool) -> None:
+    from multilens.runs import write_failure, write_run
+
+    label = f"{_from_here(folder)}: {' '.join(overrides)}"
+    try:
+        design = _search(config, log, visible)
+    except (NothingFoundError, RefusedError) as reason:
+        status, line = "infeasible" if isinstance(reason, NothingFoundError) else "refused", one_line(str(reason))
+    except OSError:
+        raise
+    except Exception as error:
+        # A job that fails by a fault of ours must not take the finished ones' table with it; its log has the whole story.
+        status, line = "failed", one_line(f"{type(error).__name__}: {error}")
+        log.append(traceback.format_exc())
+    else:
+        write_run(folder, design, _text(config), _lines(log), overrides)
+        print(f"{label}: RMSE {design.rmse:.4g} mm", flush=True)
+        return
+    write_failure(folder, status, line, _text(config), _lines([*log, line]), overrides)
+    print(f"{label}: {status}: {line}", flush=True)
+
+
+def _search(config: DictConfig, log: list[str], visible: bool) -> "Design":
+    from multilens.app import build
+    from multilens.app.terminal import progress_bar
+    from multilens.penalty import area_penalty, distance_penalty
+    from multilens.search.solve import solve
+
+    penalties = {PenaltyName["distance"]: distance_penalty, PenaltyName["area"]: area_penalty}
+    given = build.typed(config)
+    build.check(given)
+    problem, asked, began = build.build_problem(given), given.search, monotonic()
+    with progress_bar(log, visible) as listener:
+        try:
+            design = solve(
+                problem,
+                starts=asked.starts,
+                seed=asked.seed,
+                time_limit=asked.time_limit,
+                polished=asked.polished,
+                penalty=penalties[given.penalty.name],
+                listener=listener,
+            )
+        except RuntimeError as error:
+            if type(error) is not RuntimeError:
+                raise
+            # What solve raises when no start stays healthy.
+            raise NothingFoundError(str(error)) from None
+    log += [f"searched for {monotonic() - began:.1f} s: {design.status}", str(design)]
+    if not design.feasible:
+        raise NothingFoundError(design.reason)
+    return design
+
+
+def _leave(code: int, reason: Exception) -> NoReturn:
+    # Hydra would add lines of its own to any other exception.
+    tell(reason)
+    raise SystemExit(code) from None
+
+
+def _text(config: DictConfig) -> str:
+    return OmegaConf.to_yaml(config, resolve=True)
+
+
+def _lines(log: list[str]) -> str:
+    return "\n".join(log) + "\n"
+
+
+def _from_here(path: Path) -> Path:
+    here = Path.cwd()
+    return path.relative_to(here) if path.is_relative_to(here) else path
+
+
+def _remove_if_empty(folder: Path) -> None:
+    """Remove a folder that Hydra made and nothing was put into, and those above it that are empty then, up to where we are."""
+    here = Path.cwd()
+    for empty in [folder, *(above for above in folder.parents if above != here and above.is_relative_to(here))]:
+        if not empty.is_dir() or any(empty.iterdir()):
+            return
+        empty.rmdir()

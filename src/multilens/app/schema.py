@@ -1,0 +1,206 @@
+"""What a configuration may hold: plain dataclasses, so that an unknown key or a wrong type is refused.
+
+Nothing here names a class or a function: kinds and cues are words from a fixed list, which `build` looks up in tables.
+"""
+
+from dataclasses import dataclass, field
+from enum import Enum
+from typing import Any
+
+from hydra.core.config_store import ConfigStore
+from omegaconf import MISSING
+
+SCHEMA = "multilens_schema"
+"""Name under which `conf/config.yaml` asks for the schema."""
+
+ShapeKind = Enum("ShapeKind", ["rectangle", "rounded_rectangle", "disc", "polygon"])
+"""The kinds of outline that a configuration can name."""
+
+CueName = Enum("CueName", ["stereo", "defocus"])
+"""The cues that a configuration can name."""
+
+PenaltyName = Enum("PenaltyName", ["distance", "area"])
+"""The penalties that a configuration can name."""
+
+Spacing = Enum("Spacing", ["linear", "log"])
+"""How depths are spread between near and far."""
+
+
+@dataclass
+class ShapeConfig:
+    """An outline, mm; each kind takes only fields of its own.
+
+    Args:
+        kind: rectangle (width, height, centre), rounded_rectangle (and corner), disc (centre, radius) or polygon (points, holes).
+        width: along x.
+        height: along y.
+        centre: x and y; a rectangle without one has its top left at the origin, a disc its centre.
+        corner: radius of the corners.
+        radius: of the disc.
+        points: corners of the polygon, in order.
+        holes: of the polygon, each a list of corners.
+    """
+
+    kind: ShapeKind = MISSING
+    width: float | None = None
+    height: float | None = None
+    centre: list[float] | None = None
+    corner: float | None = None
+    radius: float | None = None
+    # Of lists within lists OmegaConf refuses whole numbers where it expects floats: `build` checks them instead.
+    points: list[Any] | None = None
+    holes: list[Any] | None = None
+
+
+@dataclass
+class KeepOutConfig:
+    """A place that lenses stay clear of.
+
+    Args:
+        shape: its outline.
+        clearance: distance that a body keeps from it, mm.
+    """
+
+    shape: ShapeConfig = field(default_factory=ShapeConfig)
+    clearance: float = 0.0
+
+
+@dataclass
+class BackConfig:
+    """Where lenses may stand.
+
+    Args:
+        outline: of the back.
+        keep_outs: by name.
+    """
+
+    outline: ShapeConfig = field(default_factory=ShapeConfig)
+    keep_outs: dict[str, KeepOutConfig] = field(default_factory=dict)
+
+
+@dataclass
+class LensConfig:
+    """One kind of lens; what each field means is told by `multilens.lens.Lens`.
+
+    Args:
+        focal_length: mm.
+        aperture_radius: least and largest, mm; or f_number instead.
+        f_number: least and largest; or aperture_radius instead.
+        focus: nearest and farthest in-focus depth, mm; null for the range of the depths.
+        clearance: from the rim of the aperture to the rim of the body, mm.
+        disparity_noise: mm on the sensor.
+        blur_noise: mm on the sensor.
+        tiers: sensors behind the one aperture.
+        position: x and y, mm, null for a free lens, null in place of one of them for a lens that slides.
+    """
+
+    focal_length: float = MISSING
+    aperture_radius: list[float] | None = None
+    f_number: list[float] | None = None
+    focus: list[float] | None = None
+    clearance: float = 0.0
+    disparity_noise: float = 1.0
+    blur_noise: float = 1.0
+    tiers: int = 1
+    position: list[float | None] | None = None
+
+
+@dataclass
+class LensesConfig:
+    """Several equal lenses (count, lens), or each by itself (each).
+
+    Args:
+        count: how many equal ones.
+        lens: what each of them is.
+        each: the lenses one by one; then count and lens are null.
+        gap: distance that bodies keep from each other, mm.
+    """
+
+    count: int | None = None
+    lens: LensConfig | None = None
+    each: list[LensConfig] | None = None
+    gap: float = 0.0
+
+
+@dataclass
+class DepthConfig:
+    """Where depth is to be measured.
+
+    Args:
+        near: mm.
+        far: mm.
+        count: how many depths from near to far.
+        spacing: linear or log.
+    """
+
+    near: float = MISSING
+    far: float = MISSING
+    count: int = 128
+    spacing: Spacing = Spacing["log"]
+
+
+@dataclass
+class CuesConfig:
+    """Ways to measure depth.
+
+    Args:
+        names: of stereo and defocus, at least one.
+    """
+
+    names: list[CueName] = MISSING
+
+
+@dataclass
+class PenaltyConfig:
+    """What a start pays for room that is not there.
+
+    Args:
+        name: distance or area.
+    """
+
+    name: PenaltyName = MISSING
+
+
+@dataclass
+class SearchConfig:
+    """How long and how widely to search.
+
+    Args:
+        starts: how many descend.
+        polished: how many of the best are polished.
+        seed: of the starts.
+        time_limit: s; null for none.
+    """
+
+    starts: int = MISSING
+    polished: int = MISSING
+    seed: int = 0
+    time_limit: float | None = None
+
+
+@dataclass
+class Config:
+    """Everything that a run is made from.
+
+    Args:
+        name: of the run, part of its folder's name.
+        back: where lenses may stand.
+        lenses: what is known of each.
+        depth: where depth is to be measured.
+        cues: ways to measure it.
+        penalty: for room that is not there.
+        search: how long and how widely.
+    """
+
+    name: str = MISSING
+    back: BackConfig = field(default_factory=BackConfig)
+    lenses: LensesConfig = field(default_factory=LensesConfig)
+    depth: DepthConfig = field(default_factory=DepthConfig)
+    cues: CuesConfig = field(default_factory=CuesConfig)
+    penalty: PenaltyConfig = field(default_factory=PenaltyConfig)
+    search: SearchConfig = field(default_factory=SearchConfig)
+
+
+def register() -> None:
+    """Make the schema known to Hydra; doing so again changes nothing."""
+    ConfigStore.instance().store(name=SCHEMA, node=Config, provider="multilens")

@@ -1,0 +1,43 @@
+"""What is seen on the terminal while a search runs; nothing where there is no terminal."""
+
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from math import isfinite, sqrt
+
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn
+
+from multilens.search.progress import Listener
+from multilens.search.progress import Progress as SearchProgress
+
+
+@contextmanager
+def progress_bar(log: list[str], visible: bool) -> Iterator[Listener]:
+    """Show a search's progress on stderr, and keep the last word on each stage for the log.
+
+    Args:
+        log: lines are added to it: each stage when it ends.
+        visible: whether to show anything at all; where stderr is no terminal nothing is shown either.
+    """
+    console = Console(stderr=True)
+    columns = [TextColumn("{task.description:<8}"), BarColumn(), TextColumn("{task.fields[told]}")]
+    last: dict[str, SearchProgress] = {}
+    with Progress(*columns, console=console, transient=True, disable=not (visible and sys.stderr.isatty())) as shown:
+        bar = shown.add_task("search", total=1.0, told="")
+
+        def listen(progress: SearchProgress) -> None:
+            last[progress.stage] = progress
+            shown.update(bar, description=progress.stage, completed=progress.done, told=told(progress))
+
+        try:
+            yield listen
+        finally:
+            log += [f"{stage}: {told(progress)}" for stage, progress in last.items()]
+
+
+def told(progress: SearchProgress) -> str:
+    """Say in words how far a search has come: starts alive, best RMSE so far, time left."""
+    best = f"{sqrt(progress.best):.4g} mm" if isfinite(progress.best) and progress.best >= 0 else "none"
+    left = f"{max(progress.seconds_left, 0):.0f} s left" if isfinite(progress.seconds_left) else ""
+    return ", ".join(filter(None, [f"{progress.alive} of {progress.starts} starts alive", f"best RMSE {best}", left]))
