@@ -1,0 +1,351 @@
+"""The score against closed forms and symmetries, the loss against the score, and what is no problem."""
+
+from math import cos, inf, nan, sin
+
+import pytest
+import torch
+from hypothesis import given
+from hypothesis import strategies as st
+from torch import Tensor
+from torch.autograd import grad, gradcheck
+
+from multilens import Back, Layout, Lens, LensDefocus, PairStereo, Problem, ScoreProblem, linear_depths, log_depths
+from multilens.optics.defocus import defocus_band
+
+BACK = Back.rectangle(70, 150)
+WIDE = Lens(6.0, (0.5, 2.0), disparity_noise=2e-4, blur_noise=2e-4)
+LONG = Lens(9.0, (0.5, 3.0), disparity_noise=3e-4, blur_noise=1e-4)
+TIERED = Lens(6.0, (0.5, 2.0), tiers=2, disparity_noise=2e-4, blur_noise=2e-4)
+MIXED = Problem(BACK, [WIDE, LONG, TIERED, WIDE], log_depths(200, 5000, 32))
+
+SYMMETRY = 1e-9
+"""Relative; what a score may change by when everything is moved, turned, renamed or measured in another unit."""
+
+
+def layouts(seed: int, batch: int = 3, lenses: int = 4, tiers: int = 2) -> Layout:
+    random = torch.Generator().manual_seed(seed)
+    share = torch.rand(batch, lenses, 3 + tiers, dtype=torch.float64, generator=random)
+    size = torch.tensor([70.0, 150.0], dtype=torch.float64)
+    return Layout(share[..., :2] * size, 0.5 + 1.5 * share[..., 2], 200 * 25 ** share[..., 3:])
+
+
+def uniform(near: float, far: float, count: int = 4001) -> tuple[Tensor, Tensor]:
+    """Depths and weights whose weighted mean is the mean over the range, by the trapezoidal rule."""
+    weights = torch.ones(count, dtype=torch.float64)
+    weights[0] = weights[-1] = 0.5
+    return linear_depths(near, far, count), weights
+
+
+# Closed forms
+
+
+@pytest.mark.parametrize(("near", "far"), [(200.0, 2000.0), (300.0, 400.0)])
+def test_the_best_single_focus_is_where_the_gradient_vanishes(near, far):
+    problem = Problem(BACK, [WIDE], *uniform(near, far), cues=[LensDefocus()])
+    best = 3 / 4 * (far**4 - near**4) / (far**3 - near**3)
+
+    def slope(focus: float) -> float:
+        at = torch.tensor([[focus]], dtype=torch.float64, requires_grad=True)
+        ones = torch.ones(1, dtype=torch.float64)
+        (found,) = grad(problem.score(Layout(torch.zeros(1, 2).double(), ones, at)), at)
+        return found.item()
+
+    # The score is a parabola in the focus: its slope is linear. The trapezoidal rule leaves a millionth of an interval.
+    assert abs(slope(best)) < 1e-6 * abs(slope(near))
+
+
+def with_foci(foci: list[float], tiered: bool) -> tuple[Problem, Layout]:
+    """Defocus alone, 2 A f = 1 mm^2, from 200 to 2000 mm, as that many lenses or as the tiers of one."""
+    count = len(foci)
+    focus = torch.tensor(foci, dtype=torch.float64, requires_grad=True).reshape((1, count) if tiered else (count, 1))
+    lenses = [Lens(1.0, (0.5, 0.5), tiers=count)] if tiered else [Lens(1.0, (0.5, 0.5))] * count
+    layout = Layout([[float(i), 1.0] for i in range(len(lenses))], [0.5] * len(lenses), focus)
+    return Problem(BACK, lenses, *uniform(200, 2000), cues=[LensDefocus()]), layout
+
+
+@pytest.mark.parametrize("count", [1, 2, 3])
+@pytest.mark.parametrize("tiered", [False, True], ids=["lenses", "tiers of one lens"])
+def test_the_best_foci_have_the_published_score(truths, count, tiered):
+    truth = truths["defocus_only_equal_apertures"]["0.2-2.0"][str(count)]
+    problem, layout = with_foci([1000 * focus for focus in truth["foci"]], tiered)
+    # From metres to millimetres. The sum in steps of 0.45 mm is off by the square of a step over that of the range.
+    assert problem.score(layout).item() == pytest.approx(truth["J"] * 1e12, rel=1e-6)
+
+
+@pytest.mark.parametrize("count", [1, 2, 3])
+@pytest.mark.parametrize("tiered", [False, True], ids=["lenses", "tiers of one lens"])
+def test_the_gradient_turns_at_the_published_foci(truths, count, tiered):
+    foci = truths["defocus_only_equal_apertures"]["0.2-2.0"][str(count)]["foci"]
+    # A depth changes hands between two foci as a whole: the gradient knows where the best ones are to one step of the depths,
+    # 0.45 mm, at each end of what a focus owns.
+    for step in (-0.9, 0.9):
+        problem, layout = with_foci([1000 * focus + step for focus in foci], tiered)
+        (slope,) = grad(problem.score(layout), layout.focus)
+        assert (slope * step > 0).all()
+
+
+def test_the_farthest_pair_alone_decides_stereo():
+    problem = Problem(BACK, [WIDE] * 3, *uniform(200, 2000), cues=[PairStereo()])
+    layout = Layout([[0.0, 0.0], [30.0, 40.0], [5.0, 5.0]], [1.0] * 3, [300.0] * 3)
+    # err = Z^2 n / (b f), whose square has the mean (Z2^5 - Z1^5) / (5 (Z2 - Z1)) times the rest.
+    fourth = (2000.0**5 - 200.0**5) / (5 * 1800)
+    assert problem.score(layout).item() == pytest.approx(fourth * (2e-4 / (50 * 6)) ** 2, rel=1e-6)
+
+
+def test_defocus_wins_exactly_in_its_band():
+    problem = Problem(BACK, [WIDE] * 2, linear_depths(200, 5000, 961))
+    layout = Layout([[0.0, 0.0], [0.0, 40.0]], [1.5, 0.5], [900.0, 4e9])
+    near, far = defocus_band(*torch.tensor([900.0, 1.5, 40.0], dtype=torch.float64))
+    inside = (problem.depths > near) & (problem.depths < far)
+    names = [problem.measurements[winner].label for winner in problem.winners(layout)]
+    assert [name == "defocus 1" for name in names] == inside.tolist()
+
+
+# Symmetries
+
+
+@given(st.integers(0, 2**31), st.floats(-500, 500), st.floats(-500, 500))
+def test_moving_all_lenses_changes_nothing(seed, along_x, along_y):
+    layout = layouts(seed)
+    moved = layout.position + torch.tensor([along_x, along_y], dtype=torch.float64)
+    after = MIXED.score(Layout(moved, layout.aperture_radius, layout.focus))
+    torch.testing.assert_close(after, MIXED.score(layout), rtol=SYMMETRY, atol=0)
+
+
+@given(st.integers(0, 2**31), st.floats(-4, 4), st.sampled_from([1.0, -1.0]))
+def test_turning_or_mirroring_all_lenses_changes_nothing(seed, angle, mirror):
+    layout = layouts(seed)
+    turn = torch.tensor([[cos(angle), sin(angle)], [-mirror * sin(angle), mirror * cos(angle)]], dtype=torch.float64)
+    after = MIXED.score(Layout(layout.position @ turn, layout.aperture_radius, layout.focus))
+    torch.testing.assert_close(after, MIXED.score(layout), rtol=SYMMETRY, atol=0)
+
+
+@given(st.integers(0, 2**31), st.permutations(range(4)))
+def test_naming_the_lenses_in_another_order_changes_nothing(seed, order):
+    layout = layouts(seed)
+    renamed = Layout(layout.position[:, order], layout.aperture_radius[:, order], layout.focus[:, order])
+    problem = Problem(BACK, [MIXED.lenses[i] for i in order], MIXED.depths)
+    torch.testing.assert_close(problem.score(renamed), MIXED.score(layout), rtol=SYMMETRY, atol=0)
+
+
+@given(st.integers(0, 2**31), st.floats(0.01, 100))
+def test_another_unit_of_length_scales_the_score_by_its_square(seed, unit):
+    def scaled(lens: Lens) -> Lens:
+        low, high = lens.aperture_radius
+        noise = unit * lens.disparity_noise, unit * lens.blur_noise
+        return Lens(unit * lens.focal_length, (unit * low, unit * high), None, 0.0, *noise, tiers=lens.tiers)
+
+    layout = layouts(seed)
+    larger = Layout(unit * layout.position, unit * layout.aperture_radius, unit * layout.focus)
+    problem = Problem(BACK, [scaled(lens) for lens in MIXED.lenses], unit * MIXED.depths)
+    torch.testing.assert_close(problem.score(larger), unit**2 * MIXED.score(layout), rtol=SYMMETRY, atol=0)
+
+
+@pytest.mark.parametrize("scale", [1e-300, 1e-3, 7.0, 1e300])
+def test_the_scale_of_the_weights_does_not_matter(scale):
+    weights = torch.linspace(0, 3, 32, dtype=torch.float64)
+    one, other = (Problem(BACK, MIXED.lenses, MIXED.depths, by * weights) for by in (1.0, scale))
+    torch.testing.assert_close(other.score(layouts(0)), one.score(layouts(0)), rtol=SYMMETRY, atol=0)
+
+
+def test_a_weight_counts_as_so_many_depths():
+    once = Problem(BACK, MIXED.lenses, [300.0, 500.0, 500.0, 500.0])
+    weighted = Problem(BACK, MIXED.lenses, [300.0, 500.0], [1, 3])
+    torch.testing.assert_close(weighted.score(layouts(0)), once.score(layouts(0)), rtol=SYMMETRY, atol=0)
+
+
+@given(st.integers(0, 2**31))
+def test_a_layout_scores_alike_alone_and_in_a_batch(seed):
+    batch = layouts(seed)
+    alone = torch.stack([MIXED.score(batch[index]) for index in range(3)])
+    torch.testing.assert_close(MIXED.score(batch), alone, rtol=SYMMETRY, atol=0)
+
+
+@given(st.integers(0, 2**31), st.integers(0, 3))
+def test_a_wider_aperture_never_scores_worse(seed, lens):
+    layout = layouts(seed)
+    wider = layout.aperture_radius.clone()
+    wider[:, lens] *= 1.1
+    after = MIXED.score(Layout(layout.position, wider, layout.focus))
+    assert (after <= MIXED.score(layout) * (1 + SYMMETRY)).all()
+
+
+# Loss and score
+
+
+@given(st.integers(0, 2**31))
+def test_the_score_is_the_weighted_mean_of_the_least_squared_errors(seed):
+    layout = layouts(seed)
+    least = MIXED.errors(layout).gather(-2, MIXED.winners(layout).unsqueeze(-2)).squeeze(-2)
+    torch.testing.assert_close(MIXED.score(layout), least.square().mean(-1), rtol=SYMMETRY, atol=0)
+
+
+@given(st.integers(0, 2**31), st.floats(0.005, 1.0))
+def test_the_loss_is_below_the_score_by_a_known_factor_at_most(seed, temperature):
+    layout = layouts(seed)
+    ratio = MIXED.loss(layout, temperature) / MIXED.score(layout)
+    assert (ratio <= 1 + SYMMETRY).all()
+    assert (ratio >= len(MIXED.measurements) ** -temperature * (1 - SYMMETRY)).all()
+
+
+def test_the_loss_tends_to_the_score():
+    layout = layouts(0)
+    torch.testing.assert_close(MIXED.loss(layout, 1e-4), MIXED.score(layout), rtol=1e-3, atol=0)
+
+
+@pytest.mark.parametrize("temperature", [0.5, 0.05])
+def test_gradient_of_the_loss_in_all_unknowns(temperature):
+    problem = Problem(BACK, [WIDE, LONG, TIERED], log_depths(200, 5000, 5))
+    layout = layouts(1, batch=1, lenses=3)
+    unknowns = [x.requires_grad_() for x in (layout.position, layout.aperture_radius, layout.focus)]
+    # In units in which a score of some 10^2 mm^2 is about 1, as gradcheck's absolute tolerance supposes.
+    assert gradcheck(lambda *x: problem.loss(Layout(*x), temperature) / 100, unknowns)
+
+
+@pytest.mark.parametrize("dtype", [torch.float32, torch.float64])
+@pytest.mark.parametrize("cues", [[PairStereo()], [PairStereo(), LensDefocus()]], ids=["stereo alone", "both cues"])
+def test_gradient_is_finite_at_coincident_centres(cues, dtype):
+    problem = Problem(BACK, [WIDE] * 2, log_depths(200, 5000, 32), cues=cues)
+    position = torch.ones(2, 2, dtype=dtype, requires_grad=True)
+    layout = Layout(position, torch.ones(2, dtype=dtype), torch.full((2,), 500.0, dtype=dtype))
+    loss = problem.loss(layout, 0.1)
+    (slope,) = grad(loss, position, allow_unused=True)
+    assert loss.isfinite()
+    assert slope is None or slope.isfinite().all()
+
+
+@pytest.mark.parametrize("dtype", [torch.float32, torch.float64])
+def test_gradient_is_finite_at_a_depth_in_focus(dtype):
+    problem = Problem(BACK, [WIDE], [300.0, 500.0], cues=[LensDefocus()])
+    focus = torch.tensor([[500.0]], dtype=dtype, requires_grad=True)
+    loss = problem.loss(Layout(torch.zeros(1, 2, dtype=dtype), torch.ones(1, dtype=dtype), focus), 0.02)
+    (slope,) = grad(loss, focus)
+    assert slope.isfinite().all()
+
+
+def test_single_precision_stays_single():
+    assert MIXED.loss(layouts(0).to(torch.float32), 0.1).dtype == torch.float32
+
+
+def test_a_cue_of_ones_own_takes_part():
+    class Ruler:
+        def measurements(self, lenses):
+            return LensDefocus().measurements(lenses[:1])
+
+        def __call__(self, layout, lenses, depths):
+            return layout.position.new_full((*layout.position.shape[:-2], 1, len(depths)), 0.001)
+
+    problem = Problem(BACK, MIXED.lenses, MIXED.depths, cues=[PairStereo(), Ruler()])
+    assert problem.score(layouts(0)).tolist() == [pytest.approx(1e-6)] * 3
+
+
+# What is asked
+
+
+def test_one_lens_has_a_problem_with_both_cues():
+    layout = Layout([[1.0, 1.0]], [1.0], [500.0])
+    both, defocus = (
+        Problem(BACK, [WIDE], MIXED.depths, cues=cues) for cues in ([PairStereo(), LensDefocus()], [LensDefocus()])
+    )
+    assert both.score(layout) == defocus.score(layout)
+    assert both.loss(layout, 0.1) == defocus.loss(layout, 0.1)
+
+
+def test_focus_range_is_the_lens_own_or_that_of_the_depths():
+    problem = Problem(BACK, [WIDE, Lens(6.0, (1.0, 1.0), focus=(100.0, 300.0))], linear_depths(200, 900))
+    assert problem.focus_range == ((200.0, 900.0), (100.0, 300.0))
+
+
+@pytest.mark.parametrize("spread", [linear_depths, log_depths])
+@pytest.mark.parametrize(("near", "far"), [(200.0, 5000.0), (0.1, 0.3), (33.3, 777.7)])
+def test_depths_begin_and_end_exactly_where_asked(spread, near, far):
+    depths = spread(near, far, 7)
+    assert (depths[0].item(), depths[-1].item(), len(depths)) == (near, far, 7)
+
+
+def test_linear_depths_are_a_step_apart():
+    steps = linear_depths(100, 500, 5).diff()
+    torch.testing.assert_close(steps, torch.full((4,), 100.0, dtype=torch.float64))
+
+
+def test_log_depths_are_a_factor_apart():
+    depths = log_depths(100, 1600, 5)
+    torch.testing.assert_close(depths[1:] / depths[:-1], torch.full((4,), 2.0, dtype=torch.float64))
+
+
+@pytest.mark.parametrize("spread", [linear_depths, log_depths])
+@pytest.mark.parametrize(
+    ("near", "far", "count", "name"),
+    [(0.0, 1.0, 8, "near"), (nan, 1.0, 8, "near"), (2.0, 1.0, 8, "far"), (1.0, inf, 8, "far"), (1.0, 2.0, 1, "count")],
+)
+def test_a_range_that_is_none_is_refused_by_name(spread, near, far, count, name):
+    with pytest.raises(ValueError, match=f"{name} must be"):
+        spread(near, far, count)
+
+
+@pytest.mark.parametrize(
+    ("changed", "message"),
+    [
+        ({"lenses": []}, "lenses must be at least one"),
+        ({"depths": [300.0, -1.0]}, "depths must be"),
+        ({"depths": [300.0, nan]}, "depths must be"),
+        ({"depths": []}, "depths must be"),
+        ({"weights": [1.0]}, "weights must be 2"),
+        ({"weights": [0.0, 0.0]}, "weights must be 2"),
+        ({"weights": [1.0, -1.0]}, "weights must be 2"),
+        ({"weights": [1.0, inf]}, "weights must be 2"),
+        ({"cues": []}, "cues must give"),
+        ({"cues": [PairStereo()]}, "cues must give"),
+        ({"gap": -1.0}, "gap must be"),
+        ({"gap": nan}, "gap must be"),
+    ],
+)
+def test_what_is_no_problem_is_refused_by_name(changed, message):
+    with pytest.raises(ValueError, match=message):
+        Problem(**({"back": BACK, "lenses": [WIDE], "depths": [300.0, 500.0]} | changed))
+
+
+@pytest.mark.parametrize("lenses", [1, 3])
+@pytest.mark.parametrize("ask", [Problem.score, Problem.errors, lambda p, layout: p.loss(layout, 0.1)])
+def test_a_layout_of_other_lenses_is_refused(ask, lenses):
+    problem = Problem(BACK, [WIDE] * 2, [300.0])
+    with pytest.raises(ValueError, match=f"layout must have 2 lenses of 1 foci, .* got {lenses} of 2"):
+        ask(problem, layouts(0, lenses=lenses))
+
+
+def test_a_layout_of_too_few_foci_is_refused():
+    with pytest.raises(ValueError, match="got 1 of 1"):
+        Problem(BACK, [TIERED], [300.0]).score(layouts(0, lenses=1, tiers=1))
+
+
+# Any score
+
+
+def by_radius(layout: Layout) -> Tensor:
+    return -layout.aperture_radius
+
+
+def test_of_several_terms_the_largest_is_the_score():
+    layout = layouts(0)
+    score = ScoreProblem(BACK, MIXED.lenses, by_radius).score(layout)
+    assert score.equal(-layout.aperture_radius.amin(-1))
+
+
+def test_a_score_of_one_number_is_one_term():
+    problem = ScoreProblem(BACK, MIXED.lenses, lambda layout: layout.position.sum((-1, -2)))
+    assert problem.terms(layouts(0)).shape == (3, 1)
+
+
+@given(st.integers(0, 2**31), st.floats(0.01, 1.0))
+def test_the_loss_of_terms_is_above_the_score_by_a_known_distance_at_most(seed, temperature):
+    layout = layouts(seed)
+    problem = ScoreProblem(BACK, MIXED.lenses, by_radius)
+    above = problem.loss(layout, temperature) - problem.score(layout)
+    most = temperature * torch.tensor(4.0).log() * layout.aperture_radius.amax(-1)
+    assert (above >= -1e-12).all()
+    assert (above <= most * (1 + 1e-6)).all()
+
+
+def test_the_loss_of_terms_that_are_all_zero_is_finite():
+    problem = ScoreProblem(BACK, MIXED.lenses, lambda layout: 0 * layout.aperture_radius)
+    assert problem.loss(layouts(0), 0.1).isfinite().all()
