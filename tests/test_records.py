@@ -284,6 +284,20 @@ def test_what_is_wrong_with_a_problem_is_named_in_one_line(whole, path, new, mes
 
 
 @pytest.mark.parametrize(
+    "spoil",
+    [
+        lambda problem: problem["lenses"][0].update(tiers=10**12),
+        lambda problem: problem.update(lenses=problem["lenses"] * 250, depths=[300.0] * 50, weights=[1.0] * 50),
+    ],
+    ids=["tiers", "pairs"],
+)
+def test_a_small_file_cannot_ask_for_all_memory(whole, spoil):
+    spoil(whole)
+    with pytest.raises(ValueError, match=r"^problem must have at most 1e\+07 pairs and tiers times depths, got "):
+        read_problem(whole, "problem")
+
+
+@pytest.mark.parametrize(
     ("spoil", "message"),
     [
         ({"scores": [[1.0]]}, "c.scores[0] must be a list of 2, got 1"),

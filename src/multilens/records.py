@@ -29,6 +29,9 @@ Record = dict[str, Any]
 SIGNIFICANT_DIGITS = 6
 """Of each score in the history of a search, which is there to be drawn."""
 
+MOST_ERRORS = 10**7
+"""Pairs and tiers times depths of a problem that is read: a small file must not ask for all the memory there is."""
+
 
 def shape_record(shape: Shape) -> Record:
     """Give the core's type, its coordinates as GeoJSON nests them, and the radius."""
@@ -164,6 +167,9 @@ def read_problem(value: object, name: str) -> Problem:
         for index, item in enumerate(items(fields["cues"], f"{name}.cues"))
     ]
     gap = number(fields["gap"], f"{name}.gap")
+    count = (len(lenses) ** 2 + sum(lens.tiers for lens in lenses)) * len(depths)
+    if count > MOST_ERRORS:
+        raise ValueError(f"{name} must have at most {MOST_ERRORS:g} pairs and tiers times depths, got {count:.2g}")
     with within(name):
         return Problem(back, lenses, depths, weights, cues, gap)
 
