@@ -12,7 +12,7 @@ from multilens.geometry.pairs import pair_distance, pair_indices
 from multilens.layout import Layout
 from multilens.lens import Lens
 from multilens.optics.defocus import focused_sensitivity
-from multilens.optics.stereo import pair_angular_noise, stereo_sensitivity
+from multilens.optics.stereo import pair_angular_noise
 
 NANOMETRE = 1e-6
 """mm"""
@@ -50,9 +50,27 @@ class Cue(Protocol):
         ...
 
 
+@runtime_checkable
+class FactoredCue(Cue, Protocol):
+    """A cue whose measurements all depend on depth alike, err_k(Z) = gain_k shape(Z): the best of them is best everywhere.
+
+    Then the least of k numbers stands for the least of k curves.
+    """
+
+    def gain(self, layout: Layout, lenses: Sequence[Lens]) -> Float[Tensor, "*batch k"]:
+        """Give the factor of each measurement, differentiable in the layout."""
+        ...
+
+    def shape(self, depths: Float[Tensor, " z"]) -> Float[Tensor, " z"]:
+        """Give the factor that they share."""
+        ...
+
+
 @dataclass(frozen=True)
 class PairStereo:
     """Stereo of every pair of lenses by the distance of their centres: err = Z^2 / b * sqrt((n1/f1)^2/2 + (n2/f2)^2/2).
+
+    It is a factored cue: with a common noise the widest pair is the best at every depth.
 
     Reference:
         Thesis, equation 4.3, for each pair; unequal lenses by the root mean square of their angular noises.
@@ -63,15 +81,22 @@ class PairStereo:
         pairs = pair_indices(len(lenses)).T.tolist()
         return tuple(Measurement("stereo", (i, j), None, f"stereo {i + 1}-{j + 1}") for i, j in pairs)
 
-    def __call__(
-        self, layout: Layout, lenses: Sequence[Lens], depths: Float[Tensor, " z"]
-    ) -> Float[Tensor, "*batch p z"]:
-        """Give the depth error of every pair, mm; lenses closer than a nanometre count as that far apart."""
+    def gain(self, layout: Layout, lenses: Sequence[Lens]) -> Float[Tensor, "*batch p"]:
+        """Give the angular noise of every pair over its baseline, 1/mm; lenses closer than a nanometre count as that far apart."""
         angular_noise = _column([lens.disparity_noise / lens.focal_length for lens in lenses], layout)
         first, second = pair_indices(len(lenses), layout.position.device)
         noise = pair_angular_noise(angular_noise[first], angular_noise[second])
-        baseline = pair_distance(layout.position).clamp(min=NANOMETRE)
-        return stereo_sensitivity(depths, baseline.unsqueeze(-1), (1 / noise).unsqueeze(-1))
+        return noise / pair_distance(layout.position).clamp(min=NANOMETRE)
+
+    def shape(self, depths: Float[Tensor, " z"]) -> Float[Tensor, " z"]:
+        """Give Z^2, mm^2."""
+        return depths**2
+
+    def __call__(
+        self, layout: Layout, lenses: Sequence[Lens], depths: Float[Tensor, " z"]
+    ) -> Float[Tensor, "*batch p z"]:
+        """Give the depth error of every pair, mm."""
+        return self.gain(layout, lenses).unsqueeze(-1) * self.shape(depths)
 
 
 @dataclass(frozen=True)

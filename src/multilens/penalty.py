@@ -1,10 +1,11 @@
 """A smooth price for taking room that is not there: what makes lenses part and come inside during the search.
 
 A penalty is made for a question once and then asked for many layouts. It is 0 exactly where a layout is feasible, and without
-unit: lengths count in units of the smallest body that a lens can have.
+unit: lengths count in units of the largest body that a lens can have, or that the back has room for.
 """
 
 from collections.abc import Callable
+from math import pi, sqrt
 
 import torch
 from torch import Tensor
@@ -58,4 +59,6 @@ def area_penalty(question: Question) -> Price:
 
 
 def _unit(question: Question) -> float:
-    return min(lens.least_body_radius for lens in question.lenses)
+    """Give the radius of the largest body, or of bodies that would fill the back if that is less, mm."""
+    largest = max(lens.aperture_radius[1] + lens.clearance for lens in question.lenses)
+    return min(largest, sqrt(question.back.region().area / (pi * len(question.lenses))))

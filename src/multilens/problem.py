@@ -10,7 +10,7 @@ from jaxtyping import Float, Int
 from torch import Tensor
 
 from multilens.back import Back
-from multilens.cues import Cue, LensDefocus, Measurement, PairStereo
+from multilens.cues import Cue, FactoredCue, LensDefocus, Measurement, PairStereo
 from multilens.layout import Layout
 from multilens.lens import Lens
 from multilens.numerics import soft_maximum, soft_minimum
@@ -43,7 +43,10 @@ def log_depths(near: float, far: float, count: int = 128) -> Float[Tensor, " z"]
         ValueError: a number is out of its range.
     """
     _refuse_unless_depth_range(near, far, count)
-    return near * (far / near) ** torch.linspace(0, 1, count, dtype=torch.float64)
+    depths = near * (far / near) ** torch.linspace(0, 1, count, dtype=torch.float64)
+    # Rounding would put the ends beside what was asked for.
+    depths[0], depths[-1] = near, far
+    return depths
 
 
 @runtime_checkable
@@ -142,6 +145,7 @@ class Problem:
 
     def errors(self, layout: Layout) -> Float[Tensor, "*batch k z"]:
         """Give the depth error of every measurement at every depth, mm."""
+        self._refuse_other_lenses(layout)
         depths = self.depths.to(layout.position)
         return torch.cat([cue(layout, self.lenses, depths) for cue in self.cues], dim=-2)
 
@@ -151,7 +155,7 @@ class Problem:
 
     def score(self, layout: Layout) -> Float[Tensor, "*batch"]:
         """Give J, the weighted mean over the depths of the square of the least error, mm^2."""
-        return self._mean(self.errors(layout).amin(-2).square())
+        return self._mean(self._squares(layout, 0).amin(-2))
 
     def terms(self, layout: Layout) -> Float[Tensor, "*batch 1"]:
         """Give the score alone."""
@@ -159,7 +163,31 @@ class Problem:
 
     def loss(self, layout: Layout, temperature: float) -> Float[Tensor, "*batch"]:
         """Give the score with a soft minimum of the squared errors, mm^2; never above the score, equal to it at temperature 0."""
-        return self._mean(soft_minimum(self.errors(layout).square(), temperature))
+        return self._mean(soft_minimum(self._squares(layout, temperature), temperature))
+
+    def _squares(self, layout: Layout, temperature: float) -> Float[Tensor, "*batch c z"]:
+        """Give the squared errors; of a factored cue only the (soft) minimum of its measurements, one curve for all."""
+        self._refuse_other_lenses(layout)
+        depths = self.depths.to(layout.position)
+        squares = []
+        for cue in self.cues:
+            if not cue.measurements(self.lenses):
+                continue
+            if isinstance(cue, FactoredCue):
+                gains = cue.gain(layout, self.lenses).square().unsqueeze(-1)
+                least = soft_minimum(gains, temperature) if temperature else gains.amin(-2)
+                squares.append((least * cue.shape(depths).square()).unsqueeze(-2))
+            else:
+                squares.append(cue(layout, self.lenses, depths).square())
+        return torch.cat(squares, dim=-2)
+
+    def _refuse_other_lenses(self, layout: Layout) -> None:
+        tiers = max(lens.tiers for lens in self.lenses)
+        if layout.count != len(self.lenses) or layout.focus.shape[-1] < tiers:
+            raise ValueError(
+                f"layout must have {len(self.lenses)} lenses of {tiers} foci, the problem's, "
+                f"got {layout.count} of {layout.focus.shape[-1]}"
+            )
 
     def _mean(self, squared_error: Float[Tensor, "*batch z"]) -> Float[Tensor, "*batch"]:
         return (squared_error * self.weights.to(squared_error)).sum(-1)
@@ -217,8 +245,8 @@ def _refuse_unless_depth_range(near: float, far: float, count: int) -> None:
         raise ValueError(f"near must be > 0 mm and finite, got {near:g}")
     if not (isfinite(far) and far > near):
         raise ValueError(f"far must be > near = {near:g} mm and finite, got {far:g}")
-    if count != int(count) or count < 2:
-        raise ValueError(f"count must be a whole number >= 2, got {count:g}")
+    if not isinstance(count, int) or count < 2:
+        raise ValueError(f"count must be a whole number >= 2, got {count}")
 
 
 def _refuse_unless_lenses_and_gap(lenses: Sequence[Lens], gap: float) -> None:

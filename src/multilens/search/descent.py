@@ -28,7 +28,7 @@ class DescentSettings:
     """
 
     steps: int = 300
-    temperature: tuple[float, float] = (0.5, 0.02)
+    temperature: tuple[float, float] = (2.0, 0.05)
     penalty: tuple[float, float] = (1.0, 1e4)
     rate: tuple[float, float] = (0.03, 0.0005)
 

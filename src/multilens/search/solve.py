@@ -17,6 +17,7 @@ from multilens.search.fit import why_nothing_fits
 from multilens.search.legalise import legalise
 from multilens.search.polish import OutOfTimeError, polish
 from multilens.search.progress import Listener, Progress
+from multilens.search.refocus import refocus
 from multilens.search.starts import scattered_starts
 from multilens.search.variables import Variables
 from multilens.storage import source_commit, versions
@@ -134,7 +135,8 @@ def _polish_each(
     began, alive = monotonic(), int(descended.score.isfinite().sum())
     for done, index in enumerate(order):
         try:
-            layout, certificate = legalise(problem, variables.layout(polish(problem, variables, x[index], end)))
+            polished = polish(problem, variables, refocus(problem, variables, x[index]), end)
+            layout, certificate = legalise(problem, variables.layout(polished))
         except OutOfTimeError:
             return best, scores, False
         score = problem.terms(layout).amax().item() if certificate.feasible else nan
