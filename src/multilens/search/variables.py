@@ -40,6 +40,7 @@ class Variables:
         # A tier that a lens does not have reads the focus of its first.
         self.tier_of = torch.tensor(
             [[first[i] + (t if t < lens.tiers else 0) for t in range(tiers)] for i, lens in enumerate(lenses)],
+            dtype=torch.long,
             device=device,
         )
         low = [*place_low, *(low for low, _ in radii), *(near for near, _ in foci)]
