@@ -310,17 +310,22 @@ def test_a_damaged_failure_does_not_keep_the_others_from_the_table(sweep, damage
     assert "\n" not in rows[2].reason
 
 
-def test_a_run_draws_its_pictures(tmp_path, design):
-    write_run(tmp_path / "run", design, "", "")
-    pictures = names(tmp_path / "run") - TEXTS
-    assert {name.partition(".")[0] for name in pictures} == {"layout", "errors", "overview"}
-    for name in pictures:
-        start = b"\x89PNG" if name.endswith(".png") else b"<?xml"
-        assert (tmp_path / "run" / name).read_bytes().startswith(start)
+@pytest.fixture(scope="module")
+def drawn(tmp_path_factory, design):
+    """A run with its real pictures."""
+    folder = tmp_path_factory.mktemp("drawn") / "run"
+    write_run(folder, design, "", "")
+    return folder
 
 
-def test_a_run_redrawn_is_the_same_to_the_byte(tmp_path, design):
-    write_run(tmp_path / "run", design, "", "")
-    before = contents(tmp_path / "run")
-    redraw(tmp_path / "run")
-    assert contents(tmp_path / "run") == before
+def test_a_run_draws_its_pictures(drawn):
+    pictures = names(drawn) - TEXTS
+    kinds = {"svg": b"<?xml", "png": b"\x89PNG"}
+    assert pictures == {f"{name}.{kind}" for name in ("layout", "errors", "overview") for kind in kinds}
+    assert all((drawn / name).read_bytes().startswith(kinds[name[-3:]]) for name in pictures)
+
+
+def test_a_run_redrawn_is_the_same_to_the_byte(drawn):
+    before = contents(drawn)
+    redraw(drawn)
+    assert contents(drawn) == before
