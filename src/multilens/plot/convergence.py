@@ -1,0 +1,94 @@
+"""How the starts of a search came down to the design."""
+
+from math import isfinite, sqrt
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
+from matplotlib.ticker import FuncFormatter
+
+from multilens.convergence import Convergence
+from multilens.plot.style import FAINT, INK, LENS_COLOURS, SMALL_FONT_SIZE
+from multilens.plot.units import significant
+
+START, BEST = "#9db4c8", LENS_COLOURS[0]
+
+ROOM_AT_RIGHT = 0.06
+"""Of the steps, for the marks of the polished starts."""
+
+
+def draw_convergence(ax: Axes, convergence: Convergence, score: float) -> None:
+    """Draw the root-mean-square error of every start at every step, those that were polished as marks, and the design's.
+
+    While a start descends its lenses may still overlap or leave the back, so that its error may be less than any that is
+    possible; the axis says so. A score that can be negative is drawn itself, not its root.
+
+    Args:
+        ax: drawn on.
+        convergence: of the starts.
+        score: of the design, mm^2.
+    """
+    rooted = score >= 0 and not (convergence.scores < 0).any()
+    heights = convergence.scores.detach().double().cpu().numpy()
+    heights = np.sqrt(heights) if rooted else heights
+    polished = np.array([sqrt(value) if rooted and isfinite(value) else value for value in convergence.polished_scores])
+    final = sqrt(score) if rooted else score
+    ax.plot(convergence.steps, heights.T, color=START, linewidth=0.6, alpha=0.6, zorder=1)
+    feasible = np.isfinite(polished)
+    best = convergence.polished[int(np.nanargmin(polished))] if feasible.any() else _lowest(heights)
+    if best is not None:
+        ax.plot(convergence.steps, heights[best], color=BEST, linewidth=2.4, zorder=3)
+    last = max(convergence.steps)
+    right = last + ROOM_AT_RIGHT * max(last, 1)
+    marks = np.full(int(feasible.sum()), right)
+    ax.plot(marks, polished[feasible], linestyle="none", marker="D", markersize=5, color=INK, alpha=0.6, zorder=4)
+    ax.axhline(final, color=INK, linewidth=1.0, linestyle=(0, (5, 3)), zorder=2)
+    ax.set_xlim(0, right + 0.02 * max(last, 1))
+    if rooted:
+        ax.set_yscale("log")
+        ax.set_ylim(*_limits(heights, polished[feasible], final))
+        _tick_in_plain_numbers(ax)
+    ax.set_xlabel("step of the descent (lenses may overlap until the growing penalty has parted them)")
+    ax.set_ylabel("RMSE of the layout as it stands (mm)" if rooted else "score of the layout as it stands")
+    ax.grid(True, which="major", color="#ececec", linewidth=0.8)
+    ax.set_axisbelow(True)
+    _draw_legend(ax, convergence, int(feasible.sum()), f"{significant(final, 4)}{' mm' if rooted else ''}")
+
+
+def _lowest(heights: np.ndarray) -> int | None:
+    """Give the start that ends lowest, of the healthy ones."""
+    return int(np.nanargmin(heights[:, -1])) if np.isfinite(heights[:, -1]).any() else None
+
+
+def _limits(heights: np.ndarray, polished: np.ndarray, final: float) -> tuple[float, float]:
+    every = np.concatenate([heights[np.isfinite(heights) & (heights > 0)], polished, [final]])
+    every = every[every > 0]
+    if not len(every):
+        return 0.1, 10.0
+    return every.min() / 1.15, every.max() * 1.15
+
+
+def _tick_in_plain_numbers(ax: Axes) -> None:
+    plain = FuncFormatter(lambda value, _: f"{value:g}")
+    ax.yaxis.set_major_formatter(plain)
+    low, high = ax.get_ylim()
+    few = high / low < 20
+    ax.yaxis.set_minor_formatter(FuncFormatter(lambda value, _: f"{value:g}" if few and _leads_125(value) else ""))
+
+
+def _leads_125(value: float) -> bool:
+    return f"{value:.0e}"[0] in "125"
+
+
+def _draw_legend(ax: Axes, convergence: Convergence, feasible: int, final: str) -> None:
+    failed = len(convergence.polished_scores) - feasible
+    marks = f"{feasible} polished, feasible" + (f" ({failed} did not become so)" if failed else "")
+    handles = [
+        Line2D([], [], color=START, linewidth=1.0, label=f"{len(convergence.scores)} starts"),
+        Line2D([], [], color=BEST, linewidth=2.4, label="the start of the best design"),
+        Line2D([], [], color=INK, marker="D", markersize=5, linestyle="none", alpha=0.6, label=marks),
+        Line2D([], [], color=INK, linewidth=1.0, linestyle=(0, (5, 3)), label=f"design: {final}"),
+    ]
+    place = {"loc": "lower left", "bbox_to_anchor": (0.0, 1.0), "ncols": len(handles), "borderaxespad": 0.3}
+    ax.legend(handles=handles, frameon=False, fontsize=SMALL_FONT_SIZE, columnspacing=1.4, handlelength=2.0, **place)
+    ax.tick_params(colors=FAINT, labelcolor=INK)

@@ -1,0 +1,78 @@
+"""Backs and layouts that are hard to draw, and what is asked of every picture."""
+
+import pytest
+import shapely
+
+from multilens.back import Back
+from multilens.geometry.shape import disc, rectangle
+from multilens.layout import Layout
+from multilens.lens import Lens
+from multilens.problem import Problem, ScoreProblem, linear_depths, log_depths
+
+NOISE = 0.2 * 1.22e-3
+FOCI = [4820, 3110, 2050, 1400, 930, 620, 410, 280, 350, 240, 700, 1100]
+ON_PHONE = [
+    (9, 10), (67, 150), (66, 11), (10, 149), (38, 16), (38, 140),
+    (9, 60), (67, 60), (9, 100), (67, 100), (18, 28), (58, 30),
+]  # fmt: skip
+ON_ISLAND = [(8, 8), (36, 30), (10, 36), (22, 22), (38, 20), (22, 38), (8, 22), (20, 8)]
+
+
+def lens(clearance, **others):
+    return Lens(6.86, (0.1, 1.93), (200, 5000), clearance, NOISE, NOISE, **others)
+
+
+def with_sensors(back):
+    back = back.keep_out("flash", disc((32.16, 10.22), 3.45), 0.5).keep_out("mic", disc((37.95, 33.86), 0.375), 0.5)
+    return back.keep_out("lidar", rectangle(4.06, 7.06, (32.16, 38.22)), 0.5)
+
+
+PHONE = with_sensors(Back.rounded_rectangle(76.73, 159.86, 13)).keep_out("logo", disc((38.4, 79.9), 28.75))
+ISLAND = with_sensors(Back(rectangle(45.0, 46.0, corner=12.0)))
+ISLANDS = Back(shapely.MultiPolygon([shapely.box(0, 0, 30, 20), shapely.box(60, 40, 100, 60)]))
+DEPTHS = log_depths(200, 5000, 32)
+
+
+def on(back, places, clearance, radius=1.93, **others):
+    count = len(places)
+    return Problem(back, [lens(clearance, **others)] * count, DEPTHS), Layout(places, [radius] * count, FOCI[:count])
+
+
+def thesis_line():
+    line = Lens(24, (1, 24), (20, 50), position=(None, 25))
+    return Problem(Back.rectangle(50, 50), [line] * 2, linear_depths(20, 50, 32)), Layout(
+        [(1, 25), (49, 25)], [1, 1], [47.175, 40]
+    )
+
+
+def tiers():
+    problem = Problem(ISLAND, [lens(4.0, tiers=4), lens(4.0)], DEPTHS)
+    return problem, Layout([(10, 10), (36, 25)], [1.93] * 2, [[300, 700, 1500, 4000], [500] * 4])
+
+
+def unit_square():
+    problem = ScoreProblem(Back.rectangle(1, 1), [Lens(1, (0.01, 0.5))] * 9, lambda layout: -layout.aperture_radius)
+    return problem, Layout([(0.2 + 0.3 * (i % 3), 0.2 + 0.3 * (i // 3)) for i in range(9)], [0.1] * 9, [1.0] * 9)
+
+
+CASES = {f"phone {n}": on(PHONE, ON_PHONE[:n], 5.8) for n in (1, 2, 4, 8, 12)}
+CASES |= {f"island {n}": on(ISLAND, ON_ISLAND[:n], 3.0) for n in (1, 2, 4, 8)}
+CASES |= {
+    "disc": on(Back.disc(30), [(-20, 0), (10, 20), (10, -20)], 3.0),
+    "islands": on(ISLANDS, [(5, 5), (94, 55), (25, 15), (65, 55)], 2.0),
+    "long line": on(Back.rectangle(120, 3), [(2, 1.5), (118, 1.5), (30, 1.5), (33, 1.5)], 0.5, 0.5),
+    "tiny lenses": on(PHONE, [(12, 9.5), (65, 150), (14, 9.5), (14, 11.5), (12, 11.5)], 0.0, 0.3),
+    "tiers": tiers(),
+    "thesis line": thesis_line(),
+    "unit square": unit_square(),
+}
+
+
+@pytest.fixture(params=CASES)
+def case(request):
+    return CASES[request.param]
+
+
+@pytest.fixture
+def cases():
+    return CASES

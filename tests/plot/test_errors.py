@@ -1,0 +1,114 @@
+from functools import cache
+from itertools import combinations
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+from matplotlib.patches import Rectangle
+
+from multilens.bands import winner_bands
+from multilens.layout import Layout
+from multilens.plot.errors import draw_errors, draw_winners
+from multilens.plot.style import style
+from multilens.problem import Problem
+
+
+@pytest.fixture
+def measured(case):
+    if not isinstance(case[0], Problem):
+        pytest.skip("has no depths")
+    return case
+
+
+@cache
+def drawn(draw, problem, layout, size=(5.65, 1.7), margin=0.0):
+    with style():
+        figure = Figure(figsize=size)
+        draw(figure.add_axes((margin, margin, 1 - 2 * margin, 1 - 2 * margin)), problem, layout)
+        figure.draw_without_rendering()
+    return figure
+
+
+def test_the_bar_has_a_part_for_each_band(measured):
+    ax = drawn(draw_winners, *measured).axes[0]
+    parts = [(patch.get_x(), patch.get_x() + patch.get_width()) for patch in ax.patches if isinstance(patch, Rectangle)]
+    assert np.allclose(parts, [(band.near, band.far) for band in winner_bands(*measured)])
+
+
+def test_words_of_the_bar_keep_apart_and_whole(measured):
+    figure = drawn(draw_winners, *measured)
+    boxes = {text: text.get_window_extent() for text in figure.axes[0].texts}
+    overlapping = [
+        (a.get_text(), b.get_text())
+        for a, b in combinations(boxes, 2)
+        if min(boxes[a].x1, boxes[b].x1) - max(boxes[a].x0, boxes[b].x0) > 0.5
+        and min(boxes[a].y1, boxes[b].y1) - max(boxes[a].y0, boxes[b].y0) > 0.5
+    ]
+    assert not overlapping
+    outside = [text.get_text() for text, box in boxes.items() if box.y0 < 0 or box.y1 > figure.bbox.y1]
+    assert not outside
+
+
+def test_every_winner_is_named_where_there_is_room(cases):
+    words = [text.get_text() for text in drawn(draw_winners, *cases["island 4"]).axes[0].texts]
+    assert {band.measurement.label for band in winner_bands(*cases["island 4"])} <= set(words)
+
+
+def test_crossings_are_written_below_the_bar(cases):
+    problem, layout = cases["thesis line"]
+    words = [text.get_text() for text in drawn(draw_winners, problem, layout).axes[0].texts]
+    # Zf / (1 + 2 A / b) with Zf = 40, A = 1 and b = 48.
+    assert "38.4" in words
+
+
+def test_more_bands_than_fit_are_counted(cases):
+    problem, layout = cases["phone 12"]
+    words = [text.get_text() for text in drawn(draw_winners, problem, layout, size=(1.2, 1.7)).axes[0].texts]
+    assert any(word.startswith("too narrow to label:") for word in words)
+
+
+def test_depths_over_a_wide_range_are_logarithmic_and_over_a_narrow_one_linear(cases):
+    wide, narrow = (drawn(draw_errors, *cases[name]).axes[0] for name in ("phone 4", "thesis line"))
+    assert (wide.get_xscale(), wide.get_yscale()) == ("log", "log")
+    assert (narrow.get_xscale(), narrow.get_yscale()) == ("linear", "linear")
+
+
+def test_the_bold_line_is_never_above_a_thin_one(measured):
+    ax = drawn(draw_errors, *measured).axes[0]
+    bold = [line.get_xydata() for line in ax.lines if line.get_linewidth() == 3.0]
+    thin = [line.get_xydata() for line in ax.lines if line.get_linewidth() == 0.8]
+    assert len(thin) == len(measured[0].measurements)
+    for part in bold:
+        for curve in thin:
+            assert (part[:, 1] <= np.interp(part[:, 0], *curve.T) * (1 + 1e-6)).all()
+
+
+def test_the_zeros_of_defocus_do_not_stretch_a_logarithmic_axis(cases):
+    low, high = drawn(draw_errors, *cases["phone 4"]).axes[0].get_ylim()
+    assert 10 < high / low < 1e6
+
+
+def test_the_root_mean_square_is_drawn_and_written(cases):
+    problem, layout = cases["phone 4"]
+    ax = drawn(draw_errors, problem, layout).axes[0]
+    rmse = problem.score(layout).sqrt().item()
+    assert any(np.allclose(line.get_ydata(), rmse) for line in ax.lines)
+    assert f"RMSE {rmse:.2f} mm" in [text.get_text() for text in ax.get_legend().get_texts()]
+
+
+def test_one_unit_of_depth_for_a_picture(cases):
+    assert drawn(draw_errors, *cases["phone 4"]).axes[0].get_xlabel() == "depth (m)"
+    assert drawn(draw_errors, *cases["thesis line"]).axes[0].get_xlabel() == "depth (mm)"
+
+
+def test_a_problem_of_one_depth_is_drawn(cases):
+    problem, layout = cases["phone 2"]
+    single = Problem(problem.back, problem.lenses, [500.0])
+    assert len(drawn(draw_winners, single, layout).axes[0].patches) == 1
+    drawn(draw_errors, single, layout)
+
+
+def test_errors_that_are_all_zero_are_drawn(cases):
+    problem, _ = cases["phone 1"]
+    single = Problem(problem.back, problem.lenses, [500.0])
+    drawn(draw_errors, single, Layout([(9, 10)], [1.0], [500.0]))
