@@ -24,12 +24,11 @@ CALLABLE_KEYS = ("_target_", "()", "class")
 
 CALLABLES = (
     "multilens.app.sweep.SweepTable",
-    "logging.FileHandler",
     "logging.StreamHandler",
     "colorlog.ColoredFormatter",
 )
 CALLABLE_PACKAGES = ("hydra._internal.core_plugins.", "hydra_plugins.", "optuna.samplers.")
-"""What those keys may name: our table, Hydra's launchers and sweepers, and its logging to the console: a run folder has its own."""
+"""What those keys may name: our table, launchers and sweepers, and logging to the console: a run folder has a log of its own."""
 
 
 def check_command_line(arguments: Namespace) -> None:

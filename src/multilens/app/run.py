@@ -116,9 +116,9 @@ def _search(config: DictConfig, log: list[str], visible: bool) -> "Design":
                 listener=listener,
             )
         except RuntimeError as error:
-            if type(error) is not RuntimeError:
+            # Of its own accord solve raises this when no start stays healthy; any other is a fault and keeps its traceback.
+            if "stayed healthy" not in str(error):
                 raise
-            # What solve raises when no start stays healthy.
             raise NothingFoundError(str(error)) from None
     log += [f"searched for {monotonic() - began:.1f} s: {design.status}", str(design)]
     if not design.feasible:

@@ -24,7 +24,12 @@ class SweepTable(Callback):
         folder = Path(config.hydra.sweep.dir)
         rows = write_sweep_table(folder)
         with (folder / "table.csv").open(newline="", encoding="utf-8") as file:
-            print(aligned(list(csv.reader(file))))
+            cells = list(csv.reader(file))
+        # What all jobs share is in the file; on the terminal it would only take room.
+        shared = set.intersection(*(set(row.overrides) for row in rows)) if len(rows) > 1 else set()
+        keys = {override.partition("=")[0] for override in shared}
+        shown = [index for index, head in enumerate(cells[0]) if head not in keys]
+        print(aligned([[row[index] for index in shown] for row in cells]))
         print(folder / "table.csv")
         if any(row.score is None for row in rows):
             raise SystemExit(NOTHING_FOUND)

@@ -33,5 +33,8 @@ def _line_of(error: Exception) -> str:
     if isinstance(cause, ConfigKeyError | ConfigAttributeError) and cause.full_key:
         return unknown_key(str(cause.full_key), str(cause.full_key))
     if isinstance(cause, OmegaConfBaseException) and cause.full_key:
-        return one_line(f"{cause.full_key}: {(cause.msg or str(cause)).splitlines()[0]}")
+        at = (
+            str(error).removeprefix("Error merging override ").splitlines()[0] if cause is not error else cause.full_key
+        )
+        return one_line(f"{at}: {(cause.msg or str(cause)).splitlines()[0]}")
     return one_line(str(error).splitlines()[0] if str(error) else type(error).__name__)
