@@ -120,7 +120,7 @@ class LensDefocus:
     ) -> Float[Tensor, "*batch k z"]:
         """Give the depth error of every lens and tier, mm; it is zero where the depth is in focus."""
         tiers = [(i, t) for i, lens in enumerate(lenses) for t in range(lens.tiers)]
-        lens_index, tier_index = torch.tensor(tiers, device=layout.position.device).T
+        lens_index, tier_index = torch.tensor(tiers, dtype=torch.long, device=layout.position.device).T
         # Sensitivity times noise: the focal length is counted in units of the noise, which saves a pass over all depths.
         focal_length = _column([lens.focal_length / lens.blur_noise for lens in lenses], layout)[lens_index]
         radius = layout.aperture_radius[..., lens_index].unsqueeze(-1)

@@ -1,6 +1,7 @@
 """A smooth price for taking room that is not there: what makes lenses part and come inside during the search.
 
-A penalty is made for a question once and then asked for many layouts. It is 0 exactly where a layout is feasible, and without
+A penalty is made for a question once and then asked for many layouts. It is 0 where a layout is feasible: `area_penalty` up to
+2e-4 of a body's radius, `distance_penalty` exactly, on a back of many edges up to half a cell of its samples. It is without
 unit: lengths count in units of the largest body that a lens can have, or that the back has room for.
 """
 
@@ -37,8 +38,8 @@ def distance_penalty(question: Question) -> Price:
 def area_penalty(question: Question) -> Price:
     """Price each area that is taken twice or off the back: sum of the overlaps of bodies + sum of the areas outside.
 
-    Bodies are grown by half the gap against each other, and each keep-out by its clearance, so that the areas vanish exactly
-    where the distances are kept.
+    Bodies are grown by half the gap against each other, and each keep-out by its clearance, so that the areas vanish where the
+    distances are kept.
     """
     region = question.back.region()
     unit = _unit(question)

@@ -74,14 +74,21 @@ def signed_distance(
     if on_rim.any():
         # A norm has no gradient at 0, but the signed distance passes through the rim smoothly. Lenses that are held to the
         # bounding box of a back stand exactly there and would never find the way in again.
-        signed = signed + ((point - point.detach()) * _mean_normal(segments, on_rim)).sum(-1)
+        share = on_rim.to(signed)
+        normal = share @ outward_normals(segments) / share.sum(-1, keepdim=True).clamp(min=1)
+        signed = signed + ((point - point.detach()) * normal).sum(-1)
     return signed
 
 
-def _mean_normal(segments: Float[Tensor, "e 2 2"], chosen: Bool[Tensor, "*batch e"]) -> Float[Tensor, "*batch 2"]:
-    """Give the mean of the left-hand normals of the chosen segments, each of length 1; 0 where none is chosen."""
-    along = segments[:, 1] - segments[:, 0]
+def outward_normals(segments: Float[Tensor, "*batch e 2 2"]) -> Float[Tensor, "*batch e 2"]:
+    """Give the unit vector to the left of each segment, which points out of a ring with the inside on its right.
+
+    Args:
+        segments: start and end of each, mm.
+
+    Returns:
+        Normals; 0 for a segment of length 0.
+    """
+    along = segments[..., 1, :] - segments[..., 0, :]
     length = along.norm(dim=-1, keepdim=True)
-    normal = along.flip(-1) * along.new_tensor([-1.0, 1.0]) / length.where(length > 0, 1)
-    share = chosen.to(normal)
-    return share @ normal / share.sum(-1, keepdim=True).clamp(min=1)
+    return along.flip(-1) * along.new_tensor([-1.0, 1.0]) / length.where(length > 0, 1)

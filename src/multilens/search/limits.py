@@ -5,7 +5,7 @@ from jaxtyping import Float
 from torch import Tensor
 
 from multilens.constraints import body_radius, pair_room
-from multilens.geometry.distance import is_crossed, offset_from_segments
+from multilens.geometry.distance import is_crossed, offset_from_segments, outward_normals
 from multilens.geometry.pairs import pair_indices
 from multilens.layout import Layout
 from multilens.problem import Question
@@ -37,9 +37,11 @@ class Limits:
         sides += [(keep.shape, False, -keep.shape.radius - keep.clearance) for keep in back.keep_outs]
         edges = [torch.from_numpy(shape.segments) for shape, _, _ in sides]
         self.edges = torch.cat(edges)
-        owner = torch.repeat_interleave(torch.arange(len(sides)), torch.tensor([len(e) for e in edges]))
+        owner = torch.repeat_interleave(
+            torch.arange(len(sides)), torch.tensor([len(e) for e in edges], dtype=torch.long)
+        )
         self.owner = torch.nn.functional.one_hot(owner, len(sides)).to(self.edges)
-        self.within = torch.tensor([within for _, within, _ in sides])
+        self.within = torch.tensor([within for _, within, _ in sides], dtype=torch.bool)
         reach = torch.tensor([reach for _, _, reach in sides], dtype=torch.float64)
         far = offset_from_segments(near.position, self.edges).norm(dim=-1) + reach[owner]
         watched = far.topk(min(MOST_EDGES_WATCHED, len(self.edges)), largest=False).indices
@@ -79,6 +81,9 @@ class Limits:
         sign = torch.where(right_side, 1.0, torch.where(distance == nearest_of_shape, -1.0, 0.0)).to(distance)
         room = torch.where(sign != 0, sign * distance + self.reach, NO_LIMIT)
         direction = sign.unsqueeze(-1) * offset / distance.unsqueeze(-1).clamp(min=torch.finfo(distance.dtype).tiny)
+        # Right on an edge, where bounds hold a lens to the side of a back, the offset no longer tells where to go.
+        side = torch.where(self.within[self.watched_owner], -1.0, 1.0).to(distance).unsqueeze(-1)
+        direction = torch.where((distance == 0).unsqueeze(-1), side * outward_normals(self.watched), direction)
         n, lens = layout.count, torch.arange(layout.count)
         gradient = position.new_zeros(*room.shape, len(self.variables.low))
         for axis in (0, 1):
