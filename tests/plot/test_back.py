@@ -98,7 +98,12 @@ def test_the_best_pair_is_the_widest_and_its_length_is_written(cases):
 def test_a_problem_without_depths_has_no_foci_and_no_baselines(cases):
     figure = drawn(*cases["unit square"])
     assert not [text for text in word_boxes(figure) if "focus" in text.get_text()]
-    assert not [line for line in figure.axes[0].lines if line.get_zorder() == 2.5]
+    assert not figure.axes[0].collections
+
+
+def test_every_two_lenses_are_joined(cases):
+    (joins,) = drawn(*cases["phone 12"]).axes[0].collections
+    assert len(joins.get_segments()) == 12 * 11 // 2
 
 
 @pytest.mark.parametrize("size", [(4.0, 4.0), (12.0, 4.0), (4.0, 9.0)])
