@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import torch
 from hypothesis import settings
 from jaxtyping import install_import_hook
 from shapely import MultiPolygon, Polygon, unary_union
@@ -14,6 +15,9 @@ from shapely import MultiPolygon, Polygon, unary_union
 # Every shape in a signature of the package is enforced while tests run. A whole number is welcome where a float is asked for,
 # as it is to every type checker.
 install_import_hook("multilens", "beartype.beartype(conf=beartype.BeartypeConf(is_pep484_tower=True))")
+
+# Tests run side by side, one to a core: threads of their own would only fight.
+torch.set_num_threads(1)
 
 # The same examples on every machine and every run: a failure that is seen once is seen again. The deadline is left to pytest's
 # own, since the first example of a test may import half a library.

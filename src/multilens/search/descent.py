@@ -103,6 +103,7 @@ def descend(
         spread = (second_moment / (1 - 0.99 ** (step + 1))).sqrt()
         rate = settings.rate[1] + (settings.rate[0] - settings.rate[1]) * (1 + cos(pi * done)) / 2
         x = (x.detach() - rate * mean / (spread + 1e-12)).clamp(min=0).minimum(variables.upper)
+    x = x.detach()
     with torch.no_grad():
         layout = variables.layout(x)
         score = torch.where(healthy, question.terms(layout).amax(-1), torch.nan)

@@ -12,7 +12,7 @@ from multilens.problem import Question
 from multilens.search.variables import Variables
 
 MOST_EDGES_WATCHED = 16
-"""Around each lens, nearest first: a disc rarely touches more than three, and all of a polygon's would slow every step."""
+"""Around each lens, those that leave it least: a disc rarely touches more than three, and all would slow every step."""
 
 NO_LIMIT = 1e6
 """mm; room that stands for an edge that limits nothing from where the lens is."""
@@ -27,25 +27,22 @@ class Limits:
     Args:
         question: what is asked.
         variables: how a vector becomes a layout.
-        near: the layout whose nearest edges are watched; farther ones are left out.
     """
 
-    def __init__(self, question: Question, variables: Variables, near: Layout) -> None:
+    def __init__(self, question: Question, variables: Variables) -> None:
         self.question, self.variables = question, variables
         back = question.back
         sides = [(back.outline, True, back.outline.radius)]
         sides += [(keep.shape, False, -keep.shape.radius - keep.clearance) for keep in back.keep_outs]
         edges = [torch.from_numpy(shape.segments) for shape, _, _ in sides]
         self.edges = torch.cat(edges)
-        owner = torch.repeat_interleave(
-            torch.arange(len(sides)), torch.tensor([len(e) for e in edges], dtype=torch.long)
-        )
-        self.owner = torch.nn.functional.one_hot(owner, len(sides)).to(self.edges)
+        self.edges_of_shape = [len(e) for e in edges]
+        self.owner = torch.arange(len(sides)).repeat_interleave(torch.tensor(self.edges_of_shape, dtype=torch.long))
         self.within = torch.tensor([within for _, within, _ in sides], dtype=torch.bool)
-        reach = torch.tensor([reach for _, _, reach in sides], dtype=torch.float64)
-        far = offset_from_segments(near.position, self.edges).norm(dim=-1) + reach[owner]
-        watched = far.topk(min(MOST_EDGES_WATCHED, len(self.edges)), largest=False).indices
-        self.watched, self.watched_owner, self.reach = self.edges[watched], owner[watched], reach[owner[watched]]
+        self.reach = torch.tensor([reach for _, _, reach in sides], dtype=torch.float64)[self.owner]
+        # The way to go from right on an edge, where a lens off the back is held by its bounds: inward, or away from a keep-out.
+        side = torch.where(self.within[self.owner], -1.0, 1.0).to(self.edges)
+        self.inward = side.unsqueeze(-1) * outward_normals(self.edges)
 
     def __call__(self, x: Float[Tensor, " d"]) -> tuple[Float[Tensor, " m"], Float[Tensor, "m d"]]:
         """Give the room left at every limit, mm, and its gradient in the free unknowns."""
@@ -71,19 +68,21 @@ class Limits:
 
     def _on_the_back(self, layout: Layout) -> tuple[Float[Tensor, "n e"], Float[Tensor, "n e v"]]:
         position = layout.position
-        offset = offset_from_segments(position, self.watched)
+        offset = offset_from_segments(position, self.edges)
         distance = offset.norm(dim=-1)
-        inside = (is_crossed(position, self.edges).to(self.owner) @ self.owner).remainder(2).bool()
-        right_side = (inside == self.within).gather(-1, self.watched_owner)
+        crossed = is_crossed(position, self.edges).split(self.edges_of_shape, dim=-1)
+        inside = torch.stack([edges.sum(-1).remainder(2).bool() for edges in crossed], dim=-1)
+        right_side = (inside == self.within)[:, self.owner]
         # On the wrong side of a shape only the way to its nearest edge counts: that is where the lens has to go.
-        same_shape = self.watched_owner.unsqueeze(-1) == self.watched_owner.unsqueeze(-2)
-        nearest_of_shape = torch.where(same_shape, distance.unsqueeze(-2), torch.inf).amin(-1)
-        sign = torch.where(right_side, 1.0, torch.where(distance == nearest_of_shape, -1.0, 0.0)).to(distance)
+        least = torch.stack([edges.amin(-1) for edges in distance.split(self.edges_of_shape, dim=-1)], dim=-1)
+        nearest = distance == least[:, self.owner]
+        sign = torch.where(right_side, 1.0, torch.where(nearest, -1.0, 0.0)).to(distance)
         room = torch.where(sign != 0, sign * distance + self.reach, NO_LIMIT)
         direction = sign.unsqueeze(-1) * offset / distance.unsqueeze(-1).clamp(min=torch.finfo(distance.dtype).tiny)
-        # Right on an edge, where bounds hold a lens to the side of a back, the offset no longer tells where to go.
-        side = torch.where(self.within[self.watched_owner], -1.0, 1.0).to(distance).unsqueeze(-1)
-        direction = torch.where((distance == 0).unsqueeze(-1), side * outward_normals(self.watched), direction)
+        direction = torch.where((distance == 0).unsqueeze(-1), self.inward, direction)
+        if len(self.edges) > MOST_EDGES_WATCHED:
+            room, watched = room.topk(MOST_EDGES_WATCHED, largest=False)
+            direction = direction.gather(-2, watched.unsqueeze(-1).expand(-1, -1, 2))
         n, lens = layout.count, torch.arange(layout.count)
         gradient = position.new_zeros(*room.shape, len(self.variables.low))
         for axis in (0, 1):

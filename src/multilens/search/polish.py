@@ -15,9 +15,6 @@ from multilens.search.variables import Variables
 MARGIN = 1e-10
 """Room that a polished layout keeps beyond what is asked, in units of the back's diagonal: more than rounding takes."""
 
-ROUNDS = 3
-"""A lens that ends at an edge which was not watched is polished again with the edges around its new place."""
-
 ValueAndGradient = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
 
 
@@ -61,30 +58,25 @@ def polish(
         rows = [torch.autograd.grad(value, point, retain_graph=True)[0] for value in values]
         return values.detach().numpy(), torch.stack(rows).numpy()
 
-    for _ in range(ROUNDS):
-        limits = Limits(question, variables, variables.layout(x))
+    def room(vector: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        values, gradient = limits(torch.from_numpy(vector))
+        return values.numpy() / size - MARGIN, gradient.numpy() / size
 
-        def room(vector: np.ndarray, limits: Limits = limits) -> tuple[np.ndarray, np.ndarray]:
-            values, gradient = limits(torch.from_numpy(vector))
-            return values.numpy() / size - MARGIN, gradient.numpy() / size
-
-        objective, constraint, more = _as_one_objective(terms, room, x.numpy())
-        value, jacobian = _apart(constraint)
-        result = minimize(
-            objective,
-            np.append(x.numpy(), more),
-            jac=True,
-            bounds=[(0.0, high) for high in variables.upper.tolist()] + [(None, None)] * len(more),
-            constraints={"type": "ineq", "fun": value, "jac": jacobian},
-            method="SLSQP",
-            options={"ftol": 1e-13, "maxiter": 300},
-        )
-        if not np.isfinite(result.x).all():
-            break
-        x = torch.from_numpy(result.x[: len(x)]).clamp(min=0).minimum(variables.upper)
-        if Limits(question, variables, variables.layout(x))(x)[0].min() >= 0:
-            break
-    return x
+    limits = Limits(question, variables)
+    objective, constraint, more = _as_one_objective(terms, room, x.numpy())
+    value, jacobian = _apart(constraint)
+    result = minimize(
+        objective,
+        np.append(x.numpy(), more),
+        jac=True,
+        bounds=[(0.0, high) for high in variables.upper.tolist()] + [(None, None)] * len(more),
+        constraints={"type": "ineq", "fun": value, "jac": jacobian},
+        method="SLSQP",
+        options={"ftol": 1e-13, "maxiter": 300},
+    )
+    if not np.isfinite(result.x).all():
+        return x
+    return torch.from_numpy(result.x[: len(x)]).clamp(min=0).minimum(variables.upper)
 
 
 def _as_one_objective(
