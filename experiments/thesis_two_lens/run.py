@@ -130,6 +130,21 @@ def five_ranges(thetas: torch.Tensor) -> list[dict[str, object]]:
     return rows
 
 
+def spread(thetas: torch.Tensor) -> list[dict[str, object]]:
+    """Least, quartiles and largest of the gap and of the focus at which the seeds end."""
+    at = torch.tensor([0, 0.25, 0.5, 0.75, 1], dtype=torch.float64)
+    rows = []
+    for a, ratio in enumerate(RATIOS):
+        for (near, far), theta, depths in zip(RANGES, thetas[a], range_depths(DEPTHS), strict=True):
+            ends = arrangement(theta, depths)
+            one: dict[str, object] = {"near": near, "far": far, "ratio": ratio}
+            for name, column in (("gap", ends.gap), ("focus", ends.focus)):
+                values = zip(("least", "quarter", "median", "three_quarters", "most"), column.quantile(at), strict=True)
+                one |= {f"{name}_{which}": round(value.item(), 2) for which, value in values}
+            rows.append(one | {"farthest_from_line": f"{(ends.length_used - LENGTH).abs().max():.1e}"})
+    return rows
+
+
 def five_ranges_by_centres() -> list[dict[str, object]]:
     rows = []
     ratio = RATIOS[0]
@@ -258,6 +273,7 @@ def main() -> None:
     thetas = descents()
     tables = {
         "table": ("The five ranges, baseline from rim to rim as in the thesis", five_ranges(thetas)),
+        "spread": ("Where the 20 descents end", spread(thetas)),
         "centres": ("The five ranges, baseline from centre to centre", five_ranges_by_centres()),
         "switching": ("Where each range switches, and what lies between the extremes", switching()),
         "slide": ("Descent of vanishing step along the line", slides()),
