@@ -27,7 +27,7 @@ class DescentSettings:
         rate: length of a step in units of each unknown's range; it falls along a cosine from the first to the last value.
     """
 
-    steps: int = 300
+    steps: int = 240
     temperature: tuple[float, float] = (2.0, 0.05)
     penalty: tuple[float, float] = (1.0, 1e4)
     rate: tuple[float, float] = (0.03, 0.0005)

@@ -1,6 +1,7 @@
 """The polish: from nearly feasible to a local optimum on its constraints, by sequential quadratic programming."""
 
 from collections.abc import Callable
+from math import inf
 from time import monotonic
 
 import numpy as np
@@ -23,7 +24,11 @@ class OutOfTimeError(Exception):
 
 
 def polish(
-    question: Question, variables: Variables, x: Float[Tensor, " d"], deadline: float | None = None
+    question: Question,
+    variables: Variables,
+    x: Float[Tensor, " d"],
+    deadline: float = inf,
+    tolerance: float = 1e-13,
 ) -> Float[Tensor, " d"]:
     """Take one vector to the nearest local optimum of the exact score under the exact constraints.
 
@@ -35,6 +40,7 @@ def polish(
         variables: in float64.
         x: where to begin; may be infeasible.
         deadline: by the monotonic clock, s.
+        tolerance: change of the score, as a part of it, at which to stop.
 
     Returns:
         The polished vector, feasible up to rounding unless the constraints cannot be met from here.
@@ -51,7 +57,7 @@ def polish(
     scale = question.terms(variables.layout(x)).abs().amax().clamp(min=torch.finfo(x.dtype).tiny)
 
     def terms(vector: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        if deadline is not None and monotonic() > deadline:
+        if monotonic() > deadline:
             raise OutOfTimeError
         point = torch.from_numpy(vector).requires_grad_()
         values = question.terms(variables.layout(point)) / scale
@@ -72,7 +78,7 @@ def polish(
         bounds=[(0.0, high) for high in variables.upper.tolist()] + [(None, None)] * len(more),
         constraints={"type": "ineq", "fun": value, "jac": jacobian},
         method="SLSQP",
-        options={"ftol": 1e-13, "maxiter": 300},
+        options={"ftol": tolerance, "maxiter": 300},
     )
     if not np.isfinite(result.x).all():
         return x

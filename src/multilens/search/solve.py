@@ -1,10 +1,12 @@
 """Solve a question: many starts descend, the best are polished, and the best of those is proved feasible."""
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from math import inf, nan
 from time import monotonic
 
 import torch
+from torch import Tensor
 
 from multilens.certificate import Certificate
 from multilens.convergence import Convergence
@@ -28,13 +30,16 @@ DESCENT_SHARE = 0.5
 ALIKE = 1e-4
 """Starts whose penalised scores differ by less than this part are taken for the same layout, and one of them is polished."""
 
+ROUGH = 1e-9
+"""Part of the score to which all candidates are polished; the best of them is then polished to the end."""
+
 
 def solve(
     problem: Question,
-    starts: int = 256,
+    starts: int = 128,
     seed: int = 0,
     time_limit: float | None = None,
-    polished: int = 24,
+    polished: int = 16,
     penalty: Callable[[Question], Price] = distance_penalty,
     descent: DescentSettings | None = None,
     listener: Listener = lambda progress: None,
@@ -76,19 +81,42 @@ def solve(
     end = inf if time_limit is None else began + time_limit
     descended = _descend_all(problem, x, settings, penalty, began, end, listener)
     order = _best_first(descended, settings.penalty[1])[:polished]
-    found, scores, in_time = _polish_each(problem, variables, descended, order, end, listener)
+    best, scores, in_time = _polish_each(problem, variables, descended, order, end, listener)
     convergence = Convergence(descended.history_steps, descended.history, tuple(order), tuple(scores))
-    layout, certificate = found
-    if certificate.feasible:
-        return Design(problem, layout, COMPLETE if in_time else OUT_OF_TIME, "", certificate, convergence, origin)
-    tightest = certificate.tightest
+    if best.certificate.feasible:
+        status = COMPLETE if in_time else OUT_OF_TIME
+        return Design(problem, best.layout, status, "", best.certificate, convergence, origin)
+    tightest = best.certificate.tightest
     reason = f"no feasible layout found: at best {tightest.what} lacks {-tightest.room:.4g} mm"
-    return Design(problem, layout, INFEASIBLE, reason, certificate, convergence, origin)
+    return Design(problem, best.layout, INFEASIBLE, reason, best.certificate, convergence, origin)
+
+
+@dataclass(frozen=True)
+class _Candidate:
+    """A layout as it would be claimed: rounded, certified, scored (NaN if infeasible)."""
+
+    x: Tensor
+    layout: Layout
+    certificate: Certificate
+    score: float
+
+    @classmethod
+    def of(cls, problem: Question, variables: Variables, x: Tensor) -> "_Candidate":
+        layout, certificate = legalise(problem, variables.layout(x))
+        return cls(x, layout, certificate, problem.terms(layout).amax().item() if certificate.feasible else nan)
+
+    def better_than(self, other: "_Candidate") -> bool:
+        """Whether it scores less; among infeasible ones, whether it lacks less."""
+        if self.certificate.feasible and other.certificate.feasible:
+            return self.score < other.score
+        if self.certificate.feasible or other.certificate.feasible:
+            return self.certificate.feasible
+        return self.certificate.tightest.room > other.certificate.tightest.room
 
 
 def _descend_all(
     problem: Question,
-    x: torch.Tensor,
+    x: Tensor,
     settings: DescentSettings,
     penalty: Callable[[Question], Price],
     began: float,
@@ -113,7 +141,8 @@ def _descend_all(
 
 def _best_first(descended: Descent, weight: float) -> list[int]:
     """Give the healthy starts in order of score and penalty, of those that came to the same place only one."""
-    merit = descended.score.abs().log() * descended.score.sign() + weight * descended.price
+    scale = descended.score.abs().nanmedian().clamp(min=torch.finfo(descended.score.dtype).tiny)
+    merit = descended.score.sign() * (descended.score.abs() / scale).log1p() + weight * descended.price
     order = [index for index in merit.argsort().tolist() if merit[index].isfinite()]
     return [index for k, index in enumerate(order) if k == 0 or merit[index] - merit[order[k - 1]] > ALIKE]
 
@@ -125,26 +154,21 @@ def _polish_each(
     order: list[int],
     end: float,
     listener: Listener,
-) -> tuple[tuple[Layout, Certificate], list[float], bool]:
+) -> tuple[_Candidate, list[float], bool]:
     """Polish the starts in order until the end; give the best layout, every score, and whether there was time for all."""
-    best_score, scores = inf, []
-    x = descended.x.double()
-    best = legalise(problem, variables.layout(x[order[0]]))
-    if best[1].feasible:
-        best_score = problem.terms(best[0]).amax().item()
+    x, scores = descended.x.double(), []
+    best = _Candidate.of(problem, variables, x[order[0]])
     began, alive = monotonic(), int(descended.score.isfinite().sum())
-    for done, index in enumerate(order):
-        try:
-            polished = polish(problem, variables, refocus(problem, variables, x[index]), end)
-            layout, certificate = legalise(problem, variables.layout(polished))
-        except OutOfTimeError:
-            return best, scores, False
-        score = problem.terms(layout).amax().item() if certificate.feasible else nan
-        scores.append(score)
-        nearer = not best[1].feasible and certificate.tightest.room > best[1].tightest.room
-        if score < best_score or nearer or (certificate.feasible and not best[1].feasible):
-            best, best_score = (layout, certificate), score if certificate.feasible else inf
-        now = monotonic()
-        left = min((now - began) / (done + 1) * (len(order) - done - 1), end - now)
-        listener(Progress("polish", (done + 1) / len(order), len(x), alive, best_score, left))
-    return best, scores, True
+    try:
+        for done, index in enumerate(order, start=1):
+            polished = polish(problem, variables, refocus(problem, variables, x[index]), end, ROUGH)
+            candidate = _Candidate.of(problem, variables, polished)
+            scores.append(candidate.score)
+            best = candidate if candidate.better_than(best) else best
+            now = monotonic()
+            left = min((now - began) / done * (len(order) - done), end - now)
+            listener(Progress("polish", done / len(order), len(x), alive, best.score, left))
+        finest = _Candidate.of(problem, variables, polish(problem, variables, best.x, end))
+    except OutOfTimeError:
+        return best, scores, False
+    return finest if finest.better_than(best) else best, scores, True
