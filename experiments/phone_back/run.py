@@ -51,7 +51,7 @@ def main() -> None:
         print(case.title, design, sep="\n", end="\n\n")
         design.save(RESULTS / f"{case.name}.json")
         assert isinstance(design.problem, ml.Problem)
-        figure = overview_figure(design.problem, design.layout, design.convergence)
+        figure = overview_figure(design.problem, design.layout)
         save_figures({case.name: figure}, RESULTS)
         rows.append(row(case, design))
     text = StringIO()
