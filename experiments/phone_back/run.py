@@ -4,13 +4,10 @@ python experiments/phone_back/run.py
 """
 
 import csv
-import sys
 from io import StringIO
 from pathlib import Path
 
 import torch
-
-sys.path.insert(0, str(Path(__file__).parent))
 from layouts import CASES, Case
 
 import multilens as ml

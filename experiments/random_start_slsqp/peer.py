@@ -27,7 +27,7 @@ class Peer:
         lens, outline = problem.lenses[0], problem.back.outline
         assert all(other == lens for other in problem.lenses)
         assert outline.radius > lens.aperture_radius[1] + lens.clearance
-        self.n = len(problem.lenses)
+        self.problem, self.n = problem, len(problem.lenses)
         self.z, self.weights = problem.depths.numpy(), problem.weights.numpy()
         self.stereo_noise = lens.disparity_noise / lens.focal_length
         self.defocus_noise = lens.blur_noise / (2 * lens.focal_length)

@@ -4,17 +4,13 @@ python experiments/random_start_slsqp/run.py
 """
 
 import csv
-import sys
 from io import StringIO
 from math import sqrt
 from pathlib import Path
 from time import perf_counter
 
 import numpy as np
-import torch
 from hydra import compose, initialize_config_dir
-
-sys.path.insert(0, str(Path(__file__).parent))
 from peer import Peer
 
 import multilens as ml
@@ -54,7 +50,6 @@ def peer_scores(problem: ml.Problem, runs: int) -> tuple[list[float], float]:
 
 
 def main() -> None:
-    torch.set_num_threads(2)
     rows = []
     for title, overrides in PROBLEMS:
         problem = problem_of(overrides)
