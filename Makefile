@@ -2,7 +2,7 @@
 PYTHON ?= python3
 BIN := .venv/bin
 
-.PHONY: demo test format clean
+.PHONY: demo test studies format clean
 
 demo: .venv/runtime
 	$(BIN)/multilens experiment=demo
@@ -13,6 +13,10 @@ test: .venv/development
 	$(BIN)/basedpyright
 	$(BIN)/lint-imports
 	$(BIN)/pytest -n auto --dist loadgroup
+
+# Ten minutes: every study again, with its tables and figures.
+studies: .venv/runtime
+	for study in experiments/*/run.py; do $(BIN)/python $$study || exit 1; done
 
 format: .venv/development
 	$(BIN)/ruff format .

@@ -5,8 +5,10 @@ from typing import Any
 
 import pytest
 import torch
+from threadpoolctl import threadpool_limits
 
 import multilens as ml
+from multilens.search.descent import DescentSettings
 from multilens.search.progress import Progress
 
 
@@ -92,6 +94,23 @@ def test_the_same_seed_gives_the_same_design_to_the_bit(crowded: ml.Problem) -> 
     one, other = (ml.solve(crowded, starts=8, polished=2, seed=4) for _ in range(2))
     assert torch.equal(one.layout.position, other.layout.position)
     assert torch.equal(one.layout.focus, other.layout.focus)
+
+
+def test_threads_change_nothing() -> None:
+    # Large enough for torch and the linear algebra to share the work among threads, were they left to.
+    lens = ml.Lens(5.0, (0.5, 2.0), clearance=1.0, disparity_noise=1e-3, blur_noise=1e-3)
+    problem = ml.Problem(ml.Back.rectangle(40, 30), [lens] * 4, ml.log_depths(300, 2000, 512))
+    used, designs = torch.get_num_threads(), []
+    try:
+        for threads in (1, 2):
+            torch.set_num_threads(threads)
+            with threadpool_limits(threads):
+                designs.append(ml.solve(problem, starts=32, polished=2, descent=DescentSettings(steps=60)))
+            assert torch.get_num_threads() == threads
+    finally:
+        torch.set_num_threads(used)
+    assert torch.equal(designs[0].layout.position, designs[1].layout.position)
+    assert torch.equal(designs[0].layout.focus, designs[1].layout.focus)
 
 
 def test_locked_lenses_stay(crowded: ml.Problem) -> None:

@@ -1,7 +1,6 @@
 """Solve a question: many starts descend, the best are polished, and the best of those is proved feasible."""
 
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from dataclasses import dataclass
 from math import inf, nan
 from time import monotonic
@@ -22,6 +21,7 @@ from multilens.search.polish import OutOfTimeError, polish
 from multilens.search.progress import Listener, Progress
 from multilens.search.refocus import refocus
 from multilens.search.starts import scattered_starts
+from multilens.search.threads import one_thread
 from multilens.search.variables import Variables
 from multilens.storage import source_commit, versions
 
@@ -80,7 +80,7 @@ def solve(
 
     settings = descent or DescentSettings()
     end = inf if time_limit is None else began + time_limit
-    with _one_thread():
+    with one_thread():
         descended = _descend_all(problem, x, settings, penalty, began, end, listener)
         order = _best_first(descended, settings.penalty[1])[:polished]
         best, scores, in_time = _polish_each(problem, variables, descended, order, end, listener)
@@ -91,20 +91,6 @@ def solve(
     tightest = best.certificate.tightest
     reason = f"no feasible layout found: at best {tightest.what} lacks {-tightest.room:.4g} mm"
     return Design(problem, best.layout, INFEASIBLE, reason, best.certificate, convergence, origin)
-
-
-@contextmanager
-def _one_thread() -> Iterator[None]:
-    """Keep torch to one thread: on tensors of this size a second gains nothing, and waits for the first when cores are busy.
-
-    Two busy processes beside it made a search on two threads seven times slower than on one.
-    """
-    threads = torch.get_num_threads()
-    torch.set_num_threads(1)
-    try:
-        yield
-    finally:
-        torch.set_num_threads(threads)
 
 
 @dataclass(frozen=True)
