@@ -39,6 +39,16 @@ def test_a_lens_without_a_tier_repeats_its_first_focus(crowded: ml.Problem, gene
     assert (focus[:, 1, 0] != focus[:, 1, 1]).all()
 
 
+def test_bounds_that_only_double_precision_tells_apart_are_free_in_both(crowded: ml.Problem) -> None:
+    lens = ml.Lens(5.0, (1.0, 1.0 + 1e-9), focus=(500.0, 500.0 + 1e-6))
+    problem = ml.Problem(crowded.back, [lens] * 2, crowded.depths)
+    wide, fine = Variables(problem, torch.float32), Variables(problem)
+    assert wide.free.tolist() == fine.free.tolist() == list(range(8))
+    layout = wide.layout(wide.vector(fine.layout(fine.upper / 2)))
+    assert layout.aperture_radius.tolist() == [1.0, 1.0]
+    assert layout.focus.flatten().tolist() == [500.0, 500.0]
+
+
 def test_layout_passes_gradcheck(crowded: ml.Problem, generator: torch.Generator) -> None:
     variables = Variables(crowded)
     x = torch.rand(len(variables), generator=generator, dtype=torch.float64).requires_grad_()

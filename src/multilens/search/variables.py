@@ -51,7 +51,9 @@ class Variables:
         ]
         self.low = torch.tensor(low, **kind)
         self.high = torch.tensor(high, **kind)
-        self.free = torch.nonzero(self.high > self.low).flatten()
+        # Told in double precision whatever the type, so that vectors of both have the same elements.
+        free = [index for index, (least, largest) in enumerate(zip(low, high, strict=True)) if largest > least]
+        self.free = torch.tensor(free, dtype=torch.long, device=device)
         self.focus_start = 3 * self.count
         limit = torch.ones_like(self.low)
         limit[0 : 2 * self.count : 2] = (right - left) / side
