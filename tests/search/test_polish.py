@@ -50,6 +50,15 @@ def test_a_lens_stays_on_a_back_of_many_edges_all_the_way() -> None:
     assert layout.position[0, 0].item() == pytest.approx(reach, abs=1e-7)
 
 
+def test_a_layout_with_nothing_free_stays() -> None:
+    lens = ml.Lens(1.0, (1.0, 1.0), focus=(150.0, 150.0), position=(0.0, 0.0))
+    problem = ml.Problem(ml.Back.disc(10.0), [lens], ml.linear_depths(100, 200, 8), cues=[ml.LensDefocus()])
+    given = ml.Layout([[0.0, 0.0]], [1.0], [150.0])
+    layout = polished(problem, given)
+    assert torch.equal(layout.position, given.position)
+    assert torch.equal(layout.focus, given.focus)
+
+
 def test_the_deadline_is_kept(crowded: ml.Problem) -> None:
     variables = Variables(crowded)
     with pytest.raises(OutOfTimeError):

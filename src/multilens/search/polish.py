@@ -53,6 +53,8 @@ def polish(
     """
     from scipy.optimize import minimize
 
+    if not len(x):
+        return x
     size = question.back.size
     scale = question.terms(variables.layout(x)).abs().amax().clamp(min=torch.finfo(x.dtype).tiny)
 
