@@ -104,6 +104,24 @@ def test_a_callable_in_a_users_file_is_refused(elsewhere: Path, capsys: pytest.C
     assert "hydra.callbacks.x._target_" in capsys.readouterr().err
 
 
+@pytest.mark.parametrize("stream", ["ext://this.s", "cfg://handlers", "${oc.env:STREAM}"])
+def test_a_module_that_a_log_handler_would_import_is_refused(
+    stream: str, elsewhere: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+):
+    monkeypatch.setenv("STREAM", "ext://this.s")
+    (elsewhere / "mine" / "hydra" / "job_logging").mkdir(parents=True)
+    text = f"version: 1\nhandlers: {{console: {{class: logging.StreamHandler, stream: '{stream}'}}}}\n"
+    (elsewhere / "mine" / "hydra" / "job_logging" / "foreign.yaml").write_text(text)
+    assert run_command(["--config-dir=mine", "hydra/job_logging=foreign"]) == 2
+    assert "hydra.job_logging.handlers.console.stream" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("option", ["none", "stdout", "disabled"])
+def test_hydras_own_logging_to_the_console_is_not_refused(option: str, capsys: pytest.CaptureFixture[str]):
+    assert run_command([f"hydra/job_logging={option}", "search.starts=0"]) == 2
+    assert "search.starts" in capsys.readouterr().err
+
+
 def test_unknown_keys_are_refused_without_our_primary_file_too(elsewhere: Path, capsys: pytest.CaptureFixture[str]):
     (elsewhere / "mine").mkdir()
     text = "defaults: [override hydra/job_logging: none]\nhydra: {output_subdir: null}\nname: mine\nthing: {_target_: os.getcwd}\n"

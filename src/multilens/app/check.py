@@ -30,6 +30,11 @@ CALLABLES = (
 CALLABLE_PACKAGES = ("hydra._internal.core_plugins.", "hydra_plugins.", "optuna.samplers.")
 """What those keys may name: our table, launchers and sweepers, and logging to the console: a run folder has a log of its own."""
 
+LOGGING = ("job_logging", "hydra_logging")
+"""Parts of Hydra's own configuration that go to Python's logging, which imports the module of any text that begins with ext://."""
+
+STREAMS = ("ext://sys.stdout", "ext://sys.stderr")
+
 
 def check_command_line(arguments: Namespace) -> None:
     """Compose what would be run, build it as far as torch is not needed, and look at the folder it would go to.
@@ -137,7 +142,11 @@ def _composed(config_name: str, lines: list[str]) -> DictConfig:
         raise RefusedError(
             f"hydra.output_subdir must be null, the run folder is ours alone, got {config.hydra.output_subdir}"
         )
-    _refuse_foreign_callables("hydra", OmegaConf.to_container(config.hydra, resolve=False))
+    own = OmegaConf.to_container(config.hydra, resolve=False)
+    _refuse_foreign_callables("hydra", own)
+    assert isinstance(own, dict)
+    for part in LOGGING:
+        _refuse_foreign_objects(f"hydra.{part}", own.get(part))
     return config
 
 
@@ -150,6 +159,15 @@ def _refuse_foreign_callables(key: str, node: Any) -> None:
                 one_line(f"{below} must be one of Hydra's launchers, sweepers or console log handlers, got {child}")
             )
         _refuse_foreign_callables(below, child)
+
+
+def _refuse_foreign_objects(key: str, node: Any) -> None:
+    """Refuse what Python's logging would look up by name; an interpolation could become such a name later."""
+    if isinstance(node, dict | list):
+        for name, child in node.items() if isinstance(node, dict) else enumerate(node):
+            _refuse_foreign_objects(f"{key}.{name}", child)
+    elif isinstance(node, str) and node not in STREAMS and any(mark in node for mark in ("ext://", "cfg://", "${")):
+        raise RefusedError(one_line(f"{key} must be plain text, {' or '.join(STREAMS)}, got {node}"))
 
 
 def _refuse_used_folder(key: str, config: DictConfig) -> None:
