@@ -64,6 +64,19 @@ def test_a_start_that_fails_is_reported_and_harms_no_other() -> None:
     assert counts[-1] == 1
 
 
+@pytest.mark.parametrize("terms", [1, 3])
+def test_a_score_of_zero_is_no_failure(terms: int) -> None:
+    # Both starts run to the left rim, where the score is 0, and the first is there from the beginning.
+    def score(layout: ml.Layout) -> torch.Tensor:
+        return layout.position[..., :1, 0].expand(*layout.position.shape[:-2], terms)
+
+    problem = ml.ScoreProblem(ml.Back.rectangle(10, 10), [ml.Lens(1.0, (0.5, 1.0))], score)
+    variables = Variables(problem)
+    x = variables.vector(ml.Layout([[[0.0, 5.0]], [[6.0, 5.0]]], [[0.5], [0.5]], [[1.0], [1.0]]))
+    ended = descend(problem, variables, ml.distance_penalty(problem), x, DescentSettings(steps=240), go_on)
+    assert ended.score.isfinite().tolist() == [True, True]
+
+
 def test_it_stops_when_told(crowded: ml.Problem) -> None:
     variables = Variables(crowded)
     x = scattered_starts(crowded, variables, 4, 0)

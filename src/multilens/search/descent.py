@@ -15,6 +15,9 @@ from multilens.search.variables import Variables
 NEARLY_FEASIBLE = 1e-3
 """Penalty below which a start's score is worth showing while the search runs."""
 
+LEAST_SCORE = 1e-12
+"""Size of a score, mm^2 or its own unit, below which the descent follows the score itself: its logarithm has no end at 0."""
+
 
 @dataclass(frozen=True)
 class DescentSettings:
@@ -85,7 +88,7 @@ def descend(
         smooth = question.loss(layout, _between(settings.temperature, done))
         missing = price(layout)
         # Dividing by the score itself makes this the gradient of its logarithm, also where the score is negative.
-        loss = smooth / smooth.detach().abs() + _between(settings.penalty, done) * missing
+        loss = smooth / smooth.detach().abs().clamp(min=LEAST_SCORE) + _between(settings.penalty, done) * missing
         (gradient,) = torch.autograd.grad(loss.sum(), x)
         healthy &= gradient.isfinite().all(-1) & smooth.isfinite()
         if step % every == 0:
