@@ -70,3 +70,10 @@ def test_negative_scores_are_drawn_themselves_on_a_linear_axis():
 def test_nothing_polished_is_drawn():
     short = Convergence((0,), torch.tensor([[4.0], [9.0]]), (1,), ())
     assert "0 polished, feasible" in words(drawn(short, 4.0))
+
+
+def test_the_legend_is_not_cut():
+    many = Convergence((0, 5), torch.full((128, 2), 4.0), tuple(range(16)), (1.643,) * 10 + (nan,) * 6)
+    ax = drawn(many, 1.643)
+    assert ax.get_legend().get_window_extent().x1 < ax.figure.bbox.x1
+    assert ax.get_legend().get_window_extent().y1 < ax.figure.bbox.y1

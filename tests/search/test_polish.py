@@ -5,6 +5,7 @@ import pytest
 import torch
 
 import multilens as ml
+from multilens.search.legalise import legalise
 from multilens.search.polish import OutOfTimeError, polish
 from multilens.search.variables import Variables
 
@@ -63,3 +64,13 @@ def test_the_deadline_is_kept(crowded: ml.Problem) -> None:
     variables = Variables(crowded)
     with pytest.raises(OutOfTimeError):
         polish(crowded, variables, variables.upper / 2, deadline=monotonic() - 1)
+
+
+@pytest.mark.parametrize("tolerance", [1e-13, 1e-9, 1e-6])
+def test_what_comes_out_is_feasible_at_any_tolerance(crowded: ml.Problem, tolerance: float) -> None:
+    variables = Variables(crowded)
+    x = variables.vector(
+        ml.Layout([[5.0, 20.0], [20.0, 6.0], [8.0, 25.0]], [1.0, 1.0, 1.0], [[400.0] * 2, [600.0] * 2, [900.0] * 2])
+    )
+    layout = variables.layout(polish(crowded, variables, x, tolerance=tolerance))
+    assert legalise(crowded, layout)[1].feasible

@@ -89,6 +89,6 @@ def _draw_legend(ax: Axes, convergence: Convergence, feasible: int, final: str) 
         Line2D([], [], color=INK, marker="D", markersize=5, linestyle="none", alpha=0.6, label=marks),
         Line2D([], [], color=INK, linewidth=1.0, linestyle=(0, (5, 3)), label=f"design: {final}"),
     ]
-    place = {"loc": "lower left", "bbox_to_anchor": (0.0, 1.0), "ncols": len(handles), "borderaxespad": 0.3}
+    place = {"loc": "lower left", "bbox_to_anchor": (0.0, 1.0), "ncols": 2, "borderaxespad": 0.3}
     ax.legend(handles=handles, frameon=False, fontsize=SMALL_FONT_SIZE, columnspacing=1.4, handlelength=2.0, **place)
     ax.tick_params(colors=FAINT, labelcolor=INK)

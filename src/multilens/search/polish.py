@@ -68,7 +68,10 @@ def polish(
 
     def room(vector: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         values, gradient = limits(torch.from_numpy(vector))
-        return values.numpy() / size - MARGIN, gradient.numpy() / size
+        return values.numpy() / size - margin, gradient.numpy() / size
+
+    # SLSQP is content with constraints that lack as much as its tolerance.
+    margin = max(MARGIN, 2 * tolerance)
 
     limits = Limits(question, variables)
     objective, constraint, more = _as_one_objective(terms, room, x.numpy())

@@ -170,7 +170,9 @@ def _polish_each(
             now = monotonic()
             left = min((now - began) / done * (len(order) - done), end - now)
             listener(Progress("polish", done / len(order), len(x), alive, best.score, left))
-        finest = _Candidate.of(problem, variables, polish(problem, variables, best.x, end))
+        finest = _Candidate.of(
+            problem, variables, polish(problem, variables, refocus_pairs(problem, variables, best.x), end)
+        )
     except OutOfTimeError:
         return best, scores, False
     return finest if finest.better_than(best) else best, scores, True
