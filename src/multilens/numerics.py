@@ -12,7 +12,7 @@ from torch.autograd.function import once_differentiable
 def soft_minimum(values: Float[Tensor, "*batch k z"], temperature: float) -> Float[Tensor, "*batch z"]:
     """Give a smooth lower envelope of positive values, (sum_k v_k^(-1/T))^(-T), differentiable once.
 
-    It scales as its values do, never exceeds their minimum, and reaches it as T goes to 0; the ratio is at least k^(-T). A soft
+    It scales as its values do, never exceeds the least, and reaches it as T goes to 0; the ratio is at least k^(-T). A soft
     minimum of soft minima is the soft minimum of all. At T = 1 and with squared errors for values it is inverse-variance
     fusion. Its gradient is shared among the values in proportion to v_k^(-1/T - 1): at a tie of m values each gets the same
     share; values below 1e-30 (1e-200 in double) count as that, so that at 0 the gradient is finite.

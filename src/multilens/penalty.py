@@ -38,6 +38,9 @@ def distance_penalty(question: Question) -> Price:
 def area_penalty(question: Question) -> Price:
     """Price each area that is taken twice or off the back: sum of the overlaps of bodies + sum of the areas outside.
 
+    An area does not change while one shape lies wholly inside the other, so that a body in the middle of a large keep-out, or
+    of a larger body, is not told where to go. Starts stand clear of keep-outs; `distance_penalty` has no such blind spot.
+
     Bodies are grown by half the gap against each other, and each keep-out by its clearance, so that the areas vanish where the
     distances are kept.
     """

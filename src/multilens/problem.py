@@ -16,7 +16,7 @@ from multilens.lens import Lens
 from multilens.numerics import soft_maximum, soft_minimum
 
 
-def linear_depths(near: float, far: float, count: int = 128) -> Float[Tensor, " z"]:
+def linear_depths(near: float, far: float, count: int = 512) -> Float[Tensor, " z"]:
     """Give depths evenly spaced from near to far, both included.
 
     Args:
@@ -31,7 +31,7 @@ def linear_depths(near: float, far: float, count: int = 128) -> Float[Tensor, " 
     return torch.linspace(near, far, count, dtype=torch.float64)
 
 
-def log_depths(near: float, far: float, count: int = 128) -> Float[Tensor, " z"]:
+def log_depths(near: float, far: float, count: int = 512) -> Float[Tensor, " z"]:
     """Give depths from near to far, both included, each the same factor beyond the last.
 
     Args:

@@ -3,6 +3,7 @@ from itertools import product
 from math import hypot, inf
 from typing import Any
 
+import jaxtyping
 import pytest
 import torch
 from threadpoolctl import threadpool_limits
@@ -12,13 +13,20 @@ from multilens.search.descent import DescentSettings
 from multilens.search.progress import Progress
 
 
+@pytest.fixture(autouse=True)
+def _shapes_are_checked_elsewhere(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whole searches run without: the tests of each step have the shapes enforced, and it takes three times as long."""
+    monkeypatch.setattr(jaxtyping.config, "jaxtyping_disable", True)
+
+
 def packing(back: ml.Back, count: int, most: float) -> ml.ScoreProblem:
     return ml.ScoreProblem(back, [ml.Lens(1.0, (0.01, most))] * count, lambda layout: -layout.aperture_radius)
 
 
 @pytest.mark.parametrize("count", range(2, 11))
 def test_equal_circles_in_the_unit_square(count: int, truths: dict[str, Any]) -> None:
-    design = ml.solve(packing(ml.Back.rectangle(1, 1), count, 0.5), starts=96, polished=16)
+    # Many starts: of ten circles only one in sixteen that are polished becomes the best packing.
+    design = ml.solve(packing(ml.Back.rectangle(1, 1), count, 0.5), starts=256, polished=48 if count > 5 else 12)
     published = truths["equal_circles_in_unit_square_radius"][str(count)]
     assert -design.score == pytest.approx(published, abs=1e-6)
     assert design.certificate.feasible

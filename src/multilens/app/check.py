@@ -142,6 +142,8 @@ def _composed(config_name: str, lines: list[str]) -> DictConfig:
         raise RefusedError(
             f"hydra.output_subdir must be null, the run folder is ours alone, got {config.hydra.output_subdir}"
         )
+    if config.hydra.job.chdir:
+        raise RefusedError("hydra.job.chdir must be null or false, the run folder is put in place at the end, got true")
     own = OmegaConf.to_container(config.hydra, resolve=False)
     _refuse_foreign_callables("hydra", own)
     assert isinstance(own, dict)

@@ -135,7 +135,7 @@ class DepthConfig:
 
     near: float = MISSING
     far: float = MISSING
-    count: int = 128
+    count: int = 512
     spacing: Spacing = Spacing["log"]
 
 

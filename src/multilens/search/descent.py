@@ -35,6 +35,10 @@ class DescentSettings:
     penalty: tuple[float, float] = (1.0, 1e4)
     rate: tuple[float, float] = (0.03, 0.0005)
 
+    def __post_init__(self) -> None:
+        if self.steps < 1:
+            raise ValueError(f"steps must be >= 1, got {self.steps}")
+
 
 @dataclass(frozen=True)
 class Descent:

@@ -81,7 +81,9 @@ class Limits:
         direction = sign.unsqueeze(-1) * offset / distance.unsqueeze(-1).clamp(min=torch.finfo(distance.dtype).tiny)
         direction = torch.where((distance == 0).unsqueeze(-1), self.inward, direction)
         if len(self.edges) > MOST_EDGES_WATCHED:
-            room, watched = room.topk(MOST_EDGES_WATCHED, largest=False)
+            # In the order of the edges, so that a limit keeps its place from one step to the next.
+            watched = room.topk(MOST_EDGES_WATCHED, largest=False).indices.sort(-1).values
+            room = room.gather(-1, watched)
             direction = direction.gather(-2, watched.unsqueeze(-1).expand(-1, -1, 2))
         n, lens = layout.count, torch.arange(layout.count)
         gradient = position.new_zeros(*room.shape, len(self.variables.low))

@@ -29,7 +29,7 @@ DESCENT_SHARE = 0.5
 """Part of a time limit that the descent may take; the polish, which makes a layout feasible, has the rest."""
 
 ALIKE = 1e-4
-"""Starts whose penalised scores differ by less than this part are taken for the same layout, and one of them is polished."""
+"""Starts whose penalised scores differ by less than about this part count as the same layout, and one of them is polished."""
 
 ROUGH = 1e-9
 """Part of the score to which all candidates are polished; the best of them is then polished to the end."""
@@ -69,7 +69,9 @@ def solve(
             raise ValueError(f"{name} must be >= 1, got {number}")
     if time_limit is not None and not time_limit > 0:
         raise ValueError(f"time_limit must be > 0 s, got {time_limit:g}")
-    origin = Origin(seed, starts, polished, penalty.__name__, time_limit, versions(), source_commit())
+    origin = Origin(
+        seed, starts, polished, getattr(penalty, "__name__", repr(penalty)), time_limit, versions(), source_commit()
+    )
     began = monotonic()
     variables = Variables(problem)
     x = scattered_starts(problem, variables, starts, seed)
@@ -89,7 +91,8 @@ def solve(
         status = COMPLETE if in_time else OUT_OF_TIME
         return Design(problem, best.layout, status, "", best.certificate, convergence, origin)
     tightest = best.certificate.tightest
-    reason = f"no feasible layout found: at best {tightest.what} lacks {-tightest.room:.4g} mm"
+    searched = "" if in_time else f" in {time_limit:g} s"
+    reason = f"no feasible layout found{searched}: at best {tightest.what} lacks {-tightest.room:.4g} mm"
     return Design(problem, best.layout, INFEASIBLE, reason, best.certificate, convergence, origin)
 
 
@@ -145,8 +148,11 @@ def _best_first(descended: Descent, weight: float) -> list[int]:
     """Give the healthy starts in order of score and penalty, of those that came to the same place only one."""
     scale = descended.score.abs().nanmedian().clamp(min=torch.finfo(descended.score.dtype).tiny)
     merit = descended.score.sign() * (descended.score.abs() / scale).log1p() + weight * descended.price
-    order = [index for index in merit.argsort().tolist() if merit[index].isfinite()]
-    return [index for k, index in enumerate(order) if k == 0 or merit[index] - merit[order[k - 1]] > ALIKE]
+    kept: list[int] = []
+    for index in merit.argsort().tolist():
+        if merit[index].isfinite() and (not kept or merit[index] - merit[kept[-1]] > ALIKE):
+            kept.append(index)
+    return kept
 
 
 def _polish_each(
@@ -160,6 +166,12 @@ def _polish_each(
     """Polish the starts in order until the end; give the best layout, every score, and whether there was time for all."""
     x, scores = descended.x.double(), []
     best = _Candidate.of(problem, variables, x[order[0]])
+    # Should time run out before the first polish, the best of those that are feasible as they are is still an answer.
+    for index in order[1:]:
+        if best.certificate.feasible or monotonic() > end:
+            break
+        candidate = _Candidate.of(problem, variables, x[index])
+        best = candidate if candidate.better_than(best) else best
     began, alive = monotonic(), int(descended.score.isfinite().sum())
     try:
         for done, index in enumerate(order, start=1):
@@ -170,9 +182,7 @@ def _polish_each(
             now = monotonic()
             left = min((now - began) / done * (len(order) - done), end - now)
             listener(Progress("polish", done / len(order), len(x), alive, best.score, left))
-        finest = _Candidate.of(
-            problem, variables, polish(problem, variables, refocus_pairs(problem, variables, best.x), end)
-        )
+        finest = _Candidate.of(problem, variables, polish(problem, variables, best.x, end))
     except OutOfTimeError:
         return best, scores, False
     return finest if finest.better_than(best) else best, scores, True

@@ -5,7 +5,8 @@ from jaxtyping import Float
 from torch import Tensor
 from torch.quasirandom import SobolEngine
 
-from multilens.constraints import quick_room
+from multilens.back import Back
+from multilens.constraints import room_at
 from multilens.layout import Layout
 from multilens.problem import Question
 from multilens.search.variables import Variables
@@ -15,7 +16,7 @@ PLACES_TRIED = 4096
 
 
 def scattered_starts(question: Question, variables: Variables, count: int, seed: int) -> Float[Tensor, "count d"]:
-    """Give vectors from a scrambled Sobol sequence, every free lens standing where its smallest body fits by itself.
+    """Give vectors from a scrambled Sobol sequence, every lens that is free to go anywhere where its smallest body fits.
 
     A longer list begins with a shorter one of the same seed: what start i is does not depend on how many there are.
 
@@ -31,21 +32,22 @@ def scattered_starts(question: Question, variables: Variables, count: int, seed:
     draws = _sobol(len(variables) + len(question.lenses), count, seed).to(variables.upper)
     layout = variables.layout(draws[:, : len(variables)] * variables.upper)
     position = layout.position.clone()
+    tried, room = tried_places(question.back, seed)
     for index, lens in enumerate(question.lenses):
-        places = places_that_fit(question, lens.least_body_radius, seed)
+        places = tried[room >= lens.least_body_radius]
         if lens.position is None and len(places):
             chosen = (draws[:, len(variables) + index] * len(places)).long().clamp(max=len(places) - 1)
             position[:, index] = places.to(position)[chosen]
     return variables.vector(Layout(position, layout.aperture_radius, layout.focus))
 
 
-def places_that_fit(question: Question, body_radius: float, seed: int) -> Float[Tensor, "p 2"]:
-    """Give points of the back, evenly spread and in no order, around which a body of this radius (mm) fits; maybe none."""
-    left, top, right, bottom = question.back.outline.bounds
+def tried_places(back: Back, seed: int) -> tuple[Float[Tensor, "p 2"], Float[Tensor, " p"]]:
+    """Give points spread evenly over the back's bounding box, in no order, and the body radius that fits around each, mm."""
+    left, top, right, bottom = back.outline.bounds
     corner = torch.tensor([left, top], dtype=torch.float64)
     size = torch.tensor([right - left, bottom - top], dtype=torch.float64)
     tried = corner + _sobol(2, PLACES_TRIED, seed) * size
-    return tried[(quick_room(question.back)(tried) >= body_radius).all(-1)]
+    return tried, torch.from_numpy(room_at(back, tried[:, 0].numpy(), tried[:, 1].numpy()))
 
 
 def _sobol(dimensions: int, count: int, seed: int) -> Float[Tensor, "count d"]:
