@@ -59,7 +59,8 @@ def draw_errors(ax: Axes, problem: Problem, layout: Layout) -> None:
     for measurement, row in zip(problem.measurements, np.maximum(errors, floor), strict=True):
         look = {"color": measurement_colour(measurement), "dashes": measurement_dashes(measurement)}
         ax.plot(at, row, linewidth=0.8, alpha=0.65, zorder=2, **look)
-    for band in winner_bands(problem, layout):
+    # Widest first: a narrow dip must not drown in the round ends of its neighbours.
+    for band in sorted(winner_bands(problem, layout), key=lambda band: band.near / band.far):
         part = (at >= band.near) & (at <= band.far)
         ends = np.interp([band.near, band.far], at, least)
         x, y = np.r_[band.near, at[part], band.far], np.maximum(np.r_[ends[0], least[part], ends[1]], floor)
