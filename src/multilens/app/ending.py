@@ -1,6 +1,9 @@
 """How a command ends: its exit codes, and the one line on stderr when it is not done."""
 
+import signal
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 
 from multilens.app.refusal import one_line
 
@@ -14,3 +17,13 @@ class TerminatedError(BaseException):
 def tell(reason: object) -> None:
     """Say on stderr, in one line, why the command is not done."""
     print(f"multilens: {one_line(str(reason))}", file=sys.stderr, flush=True)
+
+
+@contextmanager
+def signals_held() -> Iterator[None]:
+    """Hold back SIGINT and SIGTERM, to be heard afterwards: an exception in the middle of loading torch aborts the process."""
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT, signal.SIGTERM})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)

@@ -12,7 +12,7 @@ from hydra.core.hydra_config import HydraConfig
 from hydra.types import RunMode
 from omegaconf import DictConfig, OmegaConf
 
-from multilens.app.ending import BAD_INPUT, NOTHING_FOUND, SYSTEM_FAILED, tell
+from multilens.app.ending import BAD_INPUT, NOTHING_FOUND, SYSTEM_FAILED, signals_held, tell
 from multilens.app.refusal import RefusedError, one_line
 from multilens.app.schema import PenaltyName
 
@@ -45,6 +45,8 @@ def run_job(config: DictConfig) -> None:
     # Workers of other launchers share one terminal: a bar of each would overwrite the others'.
     in_process = not in_sweep or "basic_launcher" in hydra.launcher._target_
     try:
+        with signals_held():
+            import torch  # noqa: F401
         if in_sweep:
             _run_sweep_job(config, folder, list(hydra.overrides.task), log, in_process)
         else:
