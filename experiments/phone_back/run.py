@@ -3,8 +3,6 @@
 python experiments/phone_back/run.py
 """
 
-import csv
-from io import StringIO
 from pathlib import Path
 
 import torch
@@ -13,6 +11,7 @@ from layouts import CASES, Case
 import multilens as ml
 from multilens.geometry.pairs import pair_distance
 from multilens.plot.figures import overview_figure, save_figures
+from multilens.runs import csv_text, markdown_text
 from multilens.storage import write_whole
 
 RESULTS = Path(__file__).parent / "results"
@@ -51,13 +50,9 @@ def main() -> None:
         figure = overview_figure(design.problem, design.layout)
         save_figures({case.name: figure}, RESULTS)
         rows.append(row(case, design))
-    text = StringIO()
-    writer = csv.DictWriter(text, rows[0].keys(), lineterminator="\n")
-    writer.writeheader()
-    writer.writerows(rows)
-    write_whole(RESULTS / "table.csv", text.getvalue())
-    lines = [" | ".join(cells) for cells in (rows[0].keys(), ["---"] * len(rows[0]), *(r.values() for r in rows))]
-    write_whole(RESULTS / "table.md", "".join(f"| {line} |\n" for line in lines))
+    table = [list(rows[0]), *(list(row.values()) for row in rows)]
+    write_whole(RESULTS / "table.csv", csv_text(table))
+    write_whole(RESULTS / "table.md", markdown_text(table))
 
 
 if __name__ == "__main__":

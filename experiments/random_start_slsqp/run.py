@@ -3,8 +3,6 @@
 python experiments/random_start_slsqp/run.py
 """
 
-import csv
-from io import StringIO
 from math import sqrt
 from pathlib import Path
 from time import perf_counter
@@ -17,6 +15,7 @@ import multilens as ml
 from multilens.app.build import build_problem, typed
 from multilens.app.compose import config_folder
 from multilens.app.schema import register
+from multilens.runs import csv_text, markdown_text
 from multilens.search.legalise import legalise
 from multilens.search.threads import one_thread
 from multilens.storage import write_whole
@@ -74,13 +73,9 @@ def main() -> None:
         )
         print("\n".join(f"{key}: {value}" for key, value in rows[-1].items()), end="\n\n")
     RESULTS.mkdir(exist_ok=True)
-    text = StringIO()
-    writer = csv.DictWriter(text, rows[0].keys(), lineterminator="\n")
-    writer.writeheader()
-    writer.writerows(rows)
-    write_whole(RESULTS / "table.csv", text.getvalue())
-    lines = [" | ".join(cells) for cells in (rows[0].keys(), ["---"] * len(rows[0]), *(r.values() for r in rows))]
-    write_whole(RESULTS / "table.md", "".join(f"| {line} |\n" for line in lines))
+    table = [list(rows[0]), *(list(row.values()) for row in rows)]
+    write_whole(RESULTS / "table.csv", csv_text(table))
+    write_whole(RESULTS / "table.md", markdown_text(table))
 
 
 if __name__ == "__main__":

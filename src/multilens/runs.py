@@ -142,7 +142,7 @@ def write_sweep_table(folder: Path) -> tuple[SweepRow, ...]:
     """
     rows = sweep_table(folder)
     write_whole(folder / "table.csv", csv_text(_cells(rows)))
-    write_whole(folder / "table.md", _markdown(_cells(rows)))
+    write_whole(folder / "table.md", markdown_text(_cells(rows)))
     return rows
 
 
@@ -248,7 +248,8 @@ def _cells(rows: Sequence[SweepRow]) -> list[list[Any]]:
     ]
 
 
-def _markdown(cells: Sequence[Sequence[Any]]) -> str:
+def markdown_text(cells: Sequence[Sequence[Any]]) -> str:
+    """Give rows, the first of them the head, as a Markdown table; floats to 5 digits, None as nothing."""
     head, *rows = [[_shown(cell) for cell in row] for row in cells]
     return "".join(f"| {' | '.join(row)} |\n" for row in [head, ["---"] * len(head), *rows])
 
