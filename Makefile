@@ -2,7 +2,7 @@
 PYTHON ?= python3
 BIN := .venv/bin
 
-.PHONY: demo test studies format clean
+.PHONY: demo test studies bench format clean
 
 demo: .venv/runtime
 	$(BIN)/multilens experiment=demo
@@ -18,6 +18,10 @@ test: .venv/development
 studies: .venv/runtime
 	for study in experiments/*/run.py; do $(BIN)/python $$study || exit 1; done
 
+# The search against general optimisers: `make bench`, or `make bench QUICK=1` for a minute's worth.
+bench: .venv/benchmark
+	$(BIN)/python -m benchmark.run $(if $(QUICK),--quick)
+
 format: .venv/development
 	$(BIN)/ruff format .
 	$(BIN)/ruff check --fix .
@@ -32,4 +36,8 @@ clean:
 
 .venv/development: .venv/runtime
 	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable '.[dev]'
+	touch $@
+
+.venv/benchmark: .venv/runtime
+	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable '.[bench]'
 	touch $@

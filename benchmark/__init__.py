@@ -1,0 +1,1 @@
+"""The benchmark: the search against what a designer would use instead, on problems fixed before any result was seen."""

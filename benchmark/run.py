@@ -1,0 +1,124 @@
+"""Run the benchmark and write its tables, curves and best-known file.
+
+python -m benchmark.run
+python -m benchmark.run --quick
+python -m benchmark.run --only "4 disc" "8 blob"
+"""
+
+import argparse
+from collections.abc import Sequence
+from pathlib import Path
+from time import monotonic
+
+import multilens as ml
+from benchmark.best_known import improved, load, save
+from benchmark.curves import curves
+from benchmark.growth import growth_table
+from benchmark.lanes import CORES, Lanes, warm_lanes
+from benchmark.measures import Run
+from benchmark.methods import OURS, PEERS, RIVAL, method
+from benchmark.problems import CASES, Case
+from benchmark.report import Bound, Results, summary, table
+from benchmark.speed import speed_table
+from multilens.plot.figures import save_figures
+from multilens.plot.style import style
+from multilens.runs import csv_text, markdown_text
+from multilens.storage import write_whole
+
+LIMIT, QUICK_LIMIT = 10.0, 3.0
+"""s, of every run."""
+
+SEEDS = (0, 1, 2)
+"""Fixed before the first run. The peers that are far behind run with the first alone."""
+
+RESULTS = Path(__file__).parent / "results"
+QUICK_RESULTS = Path(__file__).parents[1] / "runs" / "benchmark"
+"""What is not the whole benchmark goes where runs go, and replaces no result."""
+
+
+def main() -> None:
+    """Run what the command line asks for."""
+    options = _options()
+    chosen = [case for case in CASES if (not options.quick or case.quick) and case.name in (options.only or _names())]
+    whole = not options.quick and not options.only
+    limit, seeds = (QUICK_LIMIT, SEEDS[:1]) if options.quick else (LIMIT, SEEDS)
+    with warm_lanes() as lanes:
+        runs = [run for case in chosen for run in _runs(lanes, case, seeds, limit)]
+        known = load()
+        for case in chosen:
+            known = improved(
+                known, case, [(run.method, each) for run in runs if run.case == case.name for each in run.found]
+            )
+        save(known)
+        bounds = {case.name: lanes.anywhere(0, _bound, case.name).result() for case in chosen}
+        speed, growth = (lanes.anywhere(0, made).result() for made in (speed_table, growth_table))
+    results = Results(chosen, runs, known, limit, bounds, speed, growth)
+    folder = RESULTS if whole else QUICK_RESULTS
+    write(results, folder)
+    print(summary(results))
+    print(f"written to {folder}")
+
+
+def write(results: Results, folder: Path) -> None:
+    """Write the tables, the curves and the summary."""
+    folder.mkdir(parents=True, exist_ok=True)
+    rows = table(results)
+    write_whole(folder / "table.csv", csv_text(rows))
+    write_whole(folder / "table.md", markdown_text(rows))
+    write_whole(folder / "summary.md", summary(results))
+    with style():
+        save_figures({"curves": curves(results)}, folder)
+
+
+def _runs(lanes: Lanes, case: Case, seeds: Sequence[int], limit: float) -> list[Run]:
+    runs = []
+    for seed in seeds:
+        for name in (OURS, RIVAL):
+            found, seconds = lanes.alone(name, case.name, seed, limit)
+            runs.append(Run(case.name, name, seed, seconds, tuple(found)))
+            _tell(runs[-1])
+    others = [name for name in PEERS if name != RIVAL]
+    for names in (others[at : at + CORES] for at in range(0, len(others), CORES)):
+        done = lanes.side_by_side(names, case.name, seeds[0], limit)
+        for name, (found, seconds) in zip(names, done, strict=True):
+            runs.append(Run(case.name, name, seeds[0], seconds, tuple(found), _failure(name)))
+            _tell(runs[-1])
+    return runs
+
+
+def _failure(name: str) -> str:
+    try:
+        method(name)
+    except ImportError as error:
+        return f"not run: {error}"
+    return ""
+
+
+def _bound(case: str) -> Bound:
+    problem = next(one for one in CASES if one.name == case).problem
+    lower_bound = getattr(ml, "lower_bound", None)
+    if lower_bound is None:
+        return Bound(None, "none yet", 0.0)
+    began = monotonic()
+    bound = lower_bound(problem)
+    return Bound(bound.value, bound.reason, monotonic() - began)
+
+
+def _tell(run: Run) -> None:
+    last = f"{run.found[-1].score:.7g} mm^2 at {run.found[-1].seconds:.2f} s" if run.found else "nothing"
+    print(f"{run.case:22} {run.method:24} seed {run.seed}: {last}, took {run.seconds:.2f} s {run.failure}", flush=True)
+
+
+def _names() -> list[str]:
+    return [case.name for case in CASES]
+
+
+def _options() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(description="Run the benchmark.")
+    parser.add_argument("--quick", action="store_true", help="three problems, one seed, 3 s a run: about a minute")
+    parser.add_argument("--only", nargs="+", choices=_names(), help="these problems alone", metavar="PROBLEM")
+    return parser.parse_args()
+
+
+if __name__ == "__main__":
+    main()
