@@ -1,6 +1,9 @@
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 import multilens as ml
+from multilens.search import fit
 from multilens.search.fit import why_nothing_fits
 
 
@@ -48,3 +51,31 @@ def test_the_best_known_packings_are_never_refused(count: int) -> None:
     # Published radii of equal circles in the unit square: they do fit.
     radius = {2: 0.292893218813, 3: 0.25433309503, 5: 0.207106781187, 7: 0.174457630187, 9: 0.166666666667}[count]
     assert why_nothing_fits(question(ml.Back.rectangle(1, 1), *[ml.Lens(1.0, (radius, radius))] * count)) is None
+
+
+def test_no_largest_disc_is_sought_where_there_is_room(monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(*_: object) -> None:
+        raise AssertionError("sought")
+
+    monkeypatch.setattr(fit, "maximum_inscribed_circle", refuse)
+    back = ml.Back.rounded_rectangle(70, 150, 10).keep_out("logo", ml.disc((35.0, 80.0), 25.0), clearance=1.0)
+    assert why_nothing_fits(question(back, *[ml.Lens(1.0, (1.0, 2.0), clearance=6.0)] * 4)) is None
+
+
+@given(st.integers(0, 2**31), st.floats(0.5, 15), st.integers(1, 12))
+def test_a_few_looks_never_answer_other_than_the_largest_disc_and_the_area(
+    random_region, seed: int, radius: float, count: int
+) -> None:
+    back = ml.Back(random_region(seed)).keep_out("flash", ml.disc((0.0, 0.0), 4.0), clearance=3.0)
+    asked = question(back, *[ml.Lens(1.0, (radius, radius))] * count)
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(fit, "_plainly_spacious", lambda *_: False)
+        thorough = why_nothing_fits(asked)
+    assert why_nothing_fits(asked) == thorough
+
+
+def test_more_area_than_a_keep_out_and_its_clearance_leave() -> None:
+    back = ml.Back.rectangle(20, 10).keep_out("battery", ml.rectangle(8, 30, centre=(4.0, 5.0)), clearance=2.0)
+    reason = why_nothing_fits(question(back, *[ml.Lens(1.0, (2.0, 2.0))] * 8))
+    assert reason is not None
+    assert "the 8 bodies need 100.5 mm^2" in reason
