@@ -1,0 +1,1 @@
+"""Lower bounds: a number that no feasible layout scores below, with the proof in docs/bounds.md."""

@@ -1,0 +1,82 @@
+"""A number that no feasible layout of a question scores below."""
+
+from dataclasses import dataclass
+from math import inf
+
+import numpy as np
+from shapely import Point
+
+from multilens.bounds.branch import Tree, branch
+from multilens.bounds.cut import Depths
+from multilens.bounds.kinds import kinds_of
+from multilens.bounds.packing import Space
+from multilens.bounds.room import body_area, box_area
+from multilens.cues import LensDefocus, PairStereo
+from multilens.problem import Problem, Question
+
+
+@dataclass(frozen=True)
+class Bound:
+    """What is known of the best score that any layout can have.
+
+    Args:
+        value: no feasible layout scores below it, mm^2; None where none is known.
+        reason: why none is known; empty where one is.
+        root: the bound before the apertures were branched upon, mm^2; None where none is known.
+        boxes: of apertures that were looked at.
+    """
+
+    value: float | None
+    reason: str = ""
+    root: float | None = None
+    boxes: int = 0
+
+
+def lower_bound(problem: Question, boxes: int = 4000, target: float = inf) -> Bound:
+    """Give a number that no feasible layout of a question scores below: see docs/bounds.md for the proof.
+
+    Known are bounds for the cues PairStereo and LensDefocus, alone or together. The same arguments give the same number: work is
+    limited by a count, never by the clock.
+
+    Args:
+        problem: what is asked.
+        boxes: of apertures to look at, >= 1; more bring the bound closer, 1 is the plain bound of a few hundredths of a second.
+        target: a score that some layout has, mm^2; the work ends when the bound is within a ten-thousandth of it.
+
+    Raises:
+        ValueError: boxes is out of its range.
+    """
+    if boxes < 1:
+        raise ValueError(f"boxes must be >= 1, got {boxes}")
+    if not isinstance(problem, Problem):
+        return Bound(None, "no bound is known for a score of one's own")
+    strange = [type(cue).__name__ for cue in problem.cues if type(cue) not in (PairStereo, LensDefocus)]
+    if strange:
+        return Bound(None, f"no bound is known for the cue {strange[0]}")
+    kinds = kinds_of(problem)
+    if kinds is None:
+        return Bound(None, "no layout is feasible: a lens has no room even at its smallest aperture")
+    present = {type(cue) for cue in problem.cues}
+    tree = Tree(
+        _depths(problem),
+        kinds,
+        Space(problem.gap, body_area(problem.back, problem.gap), box_area(problem.back, problem.gap), _round(problem)),
+        PairStereo in present and len(problem.lenses) > 1,
+        LensDefocus in present,
+    )
+    found = branch(tree, boxes, target)
+    if found.value == inf:
+        return Bound(None, "no layout is feasible: the smallest apertures cannot be packed", boxes=found.boxes)
+    return Bound(found.value, root=found.root, boxes=found.boxes)
+
+
+def _depths(problem: Problem) -> Depths:
+    depth, weight = problem.depths.numpy(), problem.weights.numpy()
+    order = np.argsort(depth, kind="stable")
+    order = order[weight[order] > 0]
+    return Depths(depth[order], weight[order])
+
+
+def _round(problem: Problem) -> float | None:
+    outline = problem.back.outline
+    return outline.radius if isinstance(outline.core, Point) else None
