@@ -65,7 +65,7 @@ def _draw(ax: Axes, results: Results, case: Case) -> None:
         times, scores = median_curve(results.of(case.name, method), results.limit)
         if len(times):
             ax.step(times, np.clip(scores / best - 1, LEAST, None), where="post", **_look(method))
-    ax.set(xscale="log", yscale="log", xlim=(FIRST, results.limit), ylim=(LEAST, MOST))
+    ax.set(xscale="log", yscale="log", xlim=(FIRST, 1.2 * results.limit), ylim=(LEAST, MOST))
     ax.set_title(case.name, fontsize=SMALL_FONT_SIZE, loc="left")
     ax.axhline(1e-3, color=FAINT, linewidth=0.7, linestyle=(0, (2, 3)), zorder=0)
     plain = FuncFormatter(lambda value, _: f"{value:g}")

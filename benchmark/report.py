@@ -185,7 +185,7 @@ def _bound_aims(results: Results) -> list[list[str]]:
     rows = [
         [
             f"median over the problems of the certified gap at most {MEDIAN_GAP:.0%}",
-            f"{median(every):.1%}",
+            _shown_gap(median(every)),
             _verdict(median(every) <= MEDIAN_GAP),
         ]
     ]
@@ -194,7 +194,7 @@ def _bound_aims(results: Results) -> list[list[str]]:
         rows.append(
             [
                 f"certified gap at most {CONVEX_GAP:.0%} on convex backs with N <= 4",
-                f"worst of {len(small)}: {worst:.1%}",
+                f"worst of {len(small)}: {_shown_gap(worst)}",
                 _verdict(worst <= CONVEX_GAP),
             ]
         )
@@ -298,3 +298,7 @@ def _shown_ratio(ratio: float, never: bool) -> str:
 
 def _shown_share(share: float) -> str:
     return f"{100 * share:.3g}" if share < inf else "none"
+
+
+def _shown_gap(gap: float) -> str:
+    return f"{gap:.1%}" if gap < inf else "no bound known"

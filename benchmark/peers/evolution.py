@@ -19,7 +19,8 @@ def evolution(task: Task) -> list[Found]:
             differential_evolution(
                 lambda x: price(np.atleast_2d(x.T)),
                 [(0.0, 1.0)] * unknowns,
-                init=price.starts(POPULATION * unknowns),
+                # SciPy takes an array here, as its documentation says; the types of its stubs do not.
+                init=price.starts(POPULATION * unknowns),  # pyright: ignore[reportArgumentType]
                 strategy="best1bin",
                 mutation=(0.4, 0.9),
                 recombination=0.8,
