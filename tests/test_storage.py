@@ -1,10 +1,12 @@
 import errno
 import os
 import stat
+import subprocess
 from pathlib import Path
 
 import pytest
 
+from multilens import storage
 from multilens.storage import folder_written_whole, scratch_folder, write_whole
 
 
@@ -141,3 +143,27 @@ def test_a_scratch_folder_vanishes_with_what_is_left_in_it(tmp_path):
     with scratch_folder(tmp_path / "run") as scratch:
         (scratch / "note.txt").write_text("new")
     assert not list(tmp_path.iterdir())
+
+
+def test_commit_is_that_of_the_checkout_and_tells_of_changes(tmp_path, monkeypatch):
+    def git(*words: str) -> str:
+        who = ["-c", "user.name=nobody", "-c", "user.email=nobody@example.org"]
+        return subprocess.run(
+            ["git", "-C", str(tmp_path), *who, *words], capture_output=True, text=True, check=True
+        ).stdout.strip()
+
+    monkeypatch.setattr(storage, "__file__", str(tmp_path / "src" / "multilens" / "storage.py"))
+    asked = storage.source_commit.__wrapped__
+    told = [asked()]
+    git("init", "-q")
+    told.append(asked())
+    (tmp_path / "code").write_text("old")
+    git("add", "code")
+    git("commit", "-q", "-m", "first")
+    told.append(asked())
+    (tmp_path / "note").write_text("not a part of the code")
+    told.append(asked())
+    (tmp_path / "code").write_text("new")
+    told.append(asked())
+    commit = git("rev-parse", "HEAD")
+    assert told == [None, None, commit, commit, commit + "+"]

@@ -7,6 +7,7 @@ import subprocess
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from functools import cache
 from importlib.metadata import version
 from pathlib import Path
 from secrets import token_hex
@@ -96,23 +97,33 @@ def folder_written_whole(folder: Path) -> Iterator[Path]:
 
 def versions() -> dict[str, str]:
     """Give the version of Python and of every library that a result depends on."""
-    return {"python": platform.python_version()} | {name: version(name) for name in LIBRARIES}
+    return {"python": platform.python_version()} | {name: _version(name) for name in LIBRARIES}
 
 
+@cache
+def _version(name: str) -> str:
+    # What is loaded stays what it is, and looking it up takes longer than a small search may.
+    return version(name)
+
+
+@cache
 def source_commit() -> str | None:
-    """Give the commit of the checkout this code runs from, with a "+" if it was changed since; None outside a checkout."""
+    """Give the commit of the checkout this code runs from, with a "+" if it was changed since; None outside a checkout.
+
+    Told as it was when first asked: later changes are not in the code that is running.
+    """
     here = Path(__file__).resolve().parents[2]
     if not (here / ".git").exists():
         return None
-    git = ["git", "-C", str(here)]
+    status = ["git", "-C", str(here), "status", "--porcelain=v2", "--branch", "--untracked-files=no"]
     try:
-        commit = subprocess.run([*git, "rev-parse", "HEAD"], capture_output=True, text=True, check=True).stdout.strip()
-        changed = subprocess.run(
-            [*git, "status", "--porcelain", "-uno"], capture_output=True, text=True, check=True
-        ).stdout
+        lines = subprocess.run(status, capture_output=True, text=True, check=True).stdout.splitlines()
     except (OSError, subprocess.CalledProcessError):
         return None
-    return commit + ("+" if changed else "")
+    commit = next((line.split()[2] for line in lines if line.startswith("# branch.oid ")), "(initial)")
+    if commit == "(initial)":
+        return None
+    return commit + ("+" if any(not line.startswith("#") for line in lines) else "")
 
 
 def _refuse_unless_free(folder: Path) -> None:
