@@ -92,7 +92,7 @@ def _climb(
     scale = np.clip(scale, 1e-6 * ceiling, ceiling)
     # The rows of the grid must hold whatever the worth may become on the way.
     grids = [
-        (focus_grid(depths, np.minimum(ceiling, HIGHEST * scale), focus.aperture, focus.focus_range, COARSE), focus.count)
+        (focus_grid(depths, np.minimum(ceiling, HIGHEST * scale), focus.aperture, focus.focus_range, COARSE), focus)
         for focus in foci
     ]
     x, ceiling_x = worth / scale, np.minimum(ceiling / scale, HIGHEST)
@@ -115,15 +115,18 @@ def _climb(
 
 
 def _value_and_gradient(
-    grids: list[tuple[FocusGrid, int]], worth: Float[np.ndarray, " z"], width: float
+    grids: list[tuple[FocusGrid, Focus]], worth: Float[np.ndarray, " z"], width: float
 ) -> tuple[float, Float[np.ndarray, " z"]]:
     """Give the bound of a worth on a coarse grid, and the gradient of the same with a soft maximum of that width, mm^2."""
     value, gradient = float(worth.sum()), np.ones_like(worth)
-    for grid, count in grids:
-        saved = grid.saved(worth)
+    for grid, focus in grids:
+        saved = grid.saved(worth, focus.aperture)
         of_node = saved.sum(1)
-        value -= count * float(of_node.max())
+        value -= focus.count * float(of_node.max())
         share = np.exp((of_node - of_node.max()) / width)
-        served = (saved > 0) * (count * share / share.sum())[:, None]
-        gradient -= np.bincount(grid.depth_index.ravel(), served.ravel(), len(worth))
+        share *= focus.count / share.sum()
+        if grid.dense:
+            gradient -= share @ (saved > 0)
+        else:
+            gradient -= np.bincount(grid.depth_index.ravel(), ((saved > 0) * share[:, None]).ravel(), len(worth))
     return value, gradient

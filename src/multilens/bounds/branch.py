@@ -4,79 +4,31 @@ from dataclasses import dataclass, field
 from math import inf, pi
 
 import numpy as np
-from jaxtyping import Bool, Float, Int
+from jaxtyping import Float, Int
 
 from multilens.bounds.ascent import Focus, best_worth
 from multilens.bounds.cut import Depths, savings, stereo_left
 from multilens.bounds.kinds import Kind, bodies, ordered, pairs_of
 from multilens.bounds.packing import Space
+from multilens.bounds.tables import TabledCut
 
-BATCH = 64
+BATCH = 32
 """Boxes split at once."""
 
-MOST_CUTS = 12
+MOST_CUTS = 24
 """Each cut is tried on every box."""
 
-ROOT_CUTS = 3
+WORTH_A_CUT = 0.01
+"""Part by which a new cut must raise the box that it was made for, or the next one comes twice as many rounds later."""
+
+ROOT_CUTS = 2
 """Cuts made before any box is split, each for the apertures that the last one thought best."""
 
 ENOUGH = 1e-4
 """Part of the target that a bound may be below it and still be enough."""
 
-AREA_PRICES = (0.35, 0.5, 0.7, 1.0, 1.4, 2.0, 2.8)
-"""Prices of area that are tried, in parts of the one that is best before any box is split."""
-
 SAFE = 1e-9
 """Part of all worth by which a bound is lowered: beyond what floats lose in the sums."""
-
-
-@dataclass(frozen=True, eq=False)
-class Row:
-    """What lenses of one kind are worth at each node, less a price for their area, and the largest of any stretch of nodes.
-
-    Args:
-        node: the value at each node.
-        stretch: by powers of two, the largest value between nodes k and k + 2^level.
-    """
-
-    node: Float[np.ndarray, " a"]
-    stretch: Float[np.ndarray, "l a"]
-
-    @classmethod
-    def of(cls, saved: Float[np.ndarray, " a"], area: Float[np.ndarray, " a"], price: float) -> "Row":
-        """Table what an aperture saves, mm^2, less the price of the area it takes; both grow with the aperture."""
-        # Between two nodes: the savings of the upper one for the area of the lower one.
-        levels = [np.append(np.maximum(saved[1:], saved[:-1]) - price * area[:-1], -inf)]
-        step = 1
-        while step < len(saved) - 1:
-            last = levels[-1]
-            levels.append(np.maximum(last, np.append(last[step:], np.full(min(step, len(last)), -inf))))
-            step *= 2
-        return cls(saved - price * area, np.stack(levels))
-
-    def largest(self, low: Int[np.ndarray, "*m"], high: Int[np.ndarray, "*m"]) -> Float[np.ndarray, "*m"]:
-        """Give the largest value between two nodes."""
-        length = np.maximum(high - low, 1)
-        level = np.frexp(length.astype(float))[1] - 1
-        value = np.maximum(self.stretch[level, low], self.stretch[level, np.maximum(high - (1 << level), 0)])
-        return np.where(high > low, value, self.node[low])
-
-
-@dataclass(frozen=True, eq=False)
-class TabledCut:
-    """A cut with all that depends on one lens tabled.
-
-    Args:
-        worth: v of each depth, mm^2.
-        saved: of each kind, what all foci of one lens save at most at each node, mm^2.
-        prices: of area, 0 among them.
-        rows: of each price and kind.
-    """
-
-    worth: Float[np.ndarray, " z"]
-    saved: tuple[Float[np.ndarray, " a"], ...]
-    prices: tuple[float, ...]
-    rows: tuple[tuple[Row, ...], ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,78 +63,64 @@ class Tree:
         bound = np.zeros(len(low))
         area = self.space.coverable(least, most)
         for cut in cuts:
-            left = stereo_left(self.depths, cut.worth, baseline if self.stereo else 0 * baseline)
-            for price, rows in zip(cut.prices, cut.rows, strict=True):
-                saved = self._saved(rows, low, high) + price * area
-                bound = np.maximum(bound, left - saved - SAFE * cut.worth.sum())
+            bound = np.maximum(bound, self._priced(cut, low, high, baseline, area).max(0) - SAFE * cut.worth.sum())
         return np.where(crowded, inf, bound)
 
-    def _saved(
-        self, rows: tuple[Row, ...], low: Int[np.ndarray, "m n"], high: Int[np.ndarray, "m n"]
-    ) -> Float[np.ndarray, " m"]:
-        total = np.zeros(len(low))
-        for kind, row in zip(self.kinds, rows, strict=True):
+    def _priced(
+        self,
+        cut: TabledCut,
+        low: Int[np.ndarray, "m n"],
+        high: Int[np.ndarray, "m n"],
+        baseline: Float[np.ndarray, " m"],
+        area: Float[np.ndarray, " m"],
+    ) -> Float[np.ndarray, "p m"]:
+        """Give the bound of a cut at each price of area, mm^2."""
+        left = stereo_left(self.depths, cut.worth, baseline if self.stereo else 0 * baseline)
+        priced = left - cut.prices[:, None] * area
+        for kind, table in zip(self.kinds, cut.tables, strict=True):
             own = slice(*kind.columns)
-            total += row.largest(low[:, own], high[:, own]).sum(1)
-        return total
+            priced -= table.most(low[:, own], high[:, own]).sum(2)
+        return priced
 
-    def areas(self) -> tuple[Float[np.ndarray, " a"], ...]:
-        """Give the area of a body grown by half the gap at each node of each kind, mm^2."""
-        return tuple(pi * (kind.body + self.space.gap / 2) ** 2 for kind in self.kinds)
-
-    def cut_for(self, node: Int[np.ndarray, " n"], baseline: float) -> TabledCut:
-        """Make the cut that is best for one aperture of each lens and one baseline."""
+    def cut_for(self, low: Int[np.ndarray, " n"], high: Int[np.ndarray, " n"]) -> TabledCut:
+        """Make the cut that is best where the cuts so far think a box is best."""
+        baseline, _ = pairs_of(self.kinds, low[None], self.space.gap)
+        node = self._best_node(low, high, baseline)
         alike: dict[tuple[float, tuple[float, float]], int] = {}
         for kind in self.kinds:
             for own in node[slice(*kind.columns)]:
                 key = float(kind.effective_aperture[own]), kind.focus_range
                 alike[key] = alike.get(key, 0) + kind.lens.tiers
         foci = tuple(Focus(aperture, focus_range, count) for (aperture, focus_range), count in alike.items())
-        worth = best_worth(self.depths, foci, baseline if self.stereo else 0.0)
-        saved = tuple(
+        worth = best_worth(self.depths, foci, float(baseline[0]) if self.stereo else 0.0)
+        saved = [
             kind.lens.tiers * savings(self.depths, worth, kind.effective_aperture, kind.focus_range)
             for kind in self.kinds
-        )
-        areas = self.areas()
-        best = self._best_price(saved, areas)
-        prices = (0.0, *(best * part for part in AREA_PRICES)) if best > 0 else (0.0,)
-        rows = tuple(
-            tuple(Row.of(save, area, price) for save, area in zip(saved, areas, strict=True)) for price in prices
-        )
-        return TabledCut(worth, saved, prices, rows)
+        ]
+        areas = [pi * (kind.body + self.space.gap / 2) ** 2 for kind in self.kinds]
+        return TabledCut.of(worth, saved, areas, [kind.count for kind in self.kinds], self.space.body_area)
 
-    def _best_price(
-        self, saved: tuple[Float[np.ndarray, " a"], ...], areas: tuple[Float[np.ndarray, " a"], ...]
-    ) -> float:
-        """Give the price of area at which all lenses together save least beyond what the area costs; 0 where there is enough."""
-        smallest = min(float(area[0]) for area in areas)
-        highest = max(float(save.max()) for save in saved) / smallest
-        if highest <= 0:
-            return 0.0
-        prices = np.append(0.0, highest * np.geomspace(1e-4, 1, 60))
-        total = np.full(len(prices), 0.0) + prices * self.space.body_area
-        for kind, save, area in zip(self.kinds, saved, areas, strict=True):
-            total += kind.count * (save - prices[:, None] * area).max(1)
-        return float(prices[total.argmin()])
-
-    def weakest_node(self, low: Int[np.ndarray, " n"], high: Int[np.ndarray, " n"]) -> Int[np.ndarray, " n"]:
-        """Give the apertures of a box that its best cut thinks best."""
-        if not self.cuts:
-            return high
+    def _best_node(
+        self, low: Int[np.ndarray, " n"], high: Int[np.ndarray, " n"], baseline: Float[np.ndarray, " 1"]
+    ) -> Int[np.ndarray, " n"]:
+        """Give the apertures of a box that its highest cut thinks best."""
         least, most = bodies(self.kinds, low[None]), bodies(self.kinds, high[None])
         area = self.space.coverable(least, most)
-        baseline, _ = pairs_of(self.kinds, low[None], self.space.gap)
-        tried = []
-        for cut in self.cuts:
-            left = stereo_left(self.depths, cut.worth, baseline if self.stereo else 0 * baseline)
-            for price, rows in zip(cut.prices, cut.rows, strict=True):
-                value = left - self._saved(rows, low[None], high[None]) - price * area
-                tried.append((float(value[0]), len(tried), rows))
-        rows = max(tried)[2]
-        node = low.copy()
-        for kind, row in zip(self.kinds, rows, strict=True):
+        node = high.copy()
+        if not self.cuts:
+            # Nothing is known: bodies that together fill the back, no wider than they may be.
+            body = (area[0] / (pi * len(high))) ** 0.5
+            for kind in self.kinds:
+                own = slice(*kind.columns)
+                node[own] = np.clip(np.searchsorted(kind.body, body), low[own], high[own])
+            return node
+        priced = [self._priced(cut, low[None], high[None], baseline, area)[:, 0] for cut in self.cuts]
+        best = max(range(len(self.cuts)), key=lambda index: priced[index].max())
+        price = int(priced[best].argmax())
+        for kind, table in zip(self.kinds, self.cuts[best].tables, strict=True):
             for column in range(*kind.columns):
-                node[column] += int(row.node[low[column] : high[column] + 1].argmax())
+                values = table.node[price, low[column] : high[column] + 1]
+                node[column] = low[column] + int(values.argmax())
         return node
 
 
@@ -213,23 +151,24 @@ def branch(tree: Tree, boxes: int, target: float) -> Branched:
     low, high = np.zeros((1, len(sizes)), dtype=int), np.array([sizes]) - 1
     if tree.defocus:
         for _ in range(ROOT_CUTS):
-            node = tree.weakest_node(low[0], high[0])
-            baseline, _ = pairs_of(tree.kinds, low, tree.space.gap)
-            tree.cuts.append(tree.cut_for(node, float(baseline[0])))
+            tree.cuts.append(tree.cut_for(low[0], high[0]))
     bound = tree.bounds(low, high, tree.cuts)
     root = float(bound[0])
-    looked, rounds = 1, 0
+    looked, rounds, next_cut, pause = 1, 0, 1, 1
     # Boxes that cannot be split any more and have had a cut of their own: one of them being the weakest is the end.
     settled = inf
     while looked < boxes and len(bound) and bound.min() < min(target * (1 - ENOUGH), settled):
         rounds += 1
         weakest = int(bound.argmin())
         whole = bool((high[weakest] - low[weakest] <= 1).all())
-        if tree.defocus and len(tree.cuts) < MOST_CUTS and (whole or rounds & (rounds - 1) == 0):
-            baseline, _ = pairs_of(tree.kinds, low[weakest : weakest + 1], tree.space.gap)
-            cut = tree.cut_for(tree.weakest_node(low[weakest], high[weakest]), float(baseline[0]))
+        if tree.defocus and len(tree.cuts) < MOST_CUTS and (whole or rounds >= next_cut):
+            cut = tree.cut_for(low[weakest], high[weakest])
             tree.cuts.append(cut)
+            before = float(bound[weakest])
             bound = np.maximum(bound, tree.bounds(low, high, [cut]))
+            # Where a cut made for the weakest box hardly helped it, splitting does more than cuts for a while.
+            pause = 1 if bound[weakest] > before * (1 + WORTH_A_CUT) else 2 * pause
+            next_cut = rounds + pause
         order = np.argsort(bound, kind="stable")
         chosen, kept = order[:BATCH], order[BATCH:]
         ended = (high[chosen] - low[chosen] <= 1).all(1)
@@ -262,7 +201,5 @@ def _split(
     lower_high, upper_low = high.copy(), low.copy()
     lower_high[rows, column] = middle
     upper_low[rows, column] = middle
-    child_low, child_high = ordered(
-        tree.kinds, np.concatenate([low, upper_low]), np.concatenate([lower_high, high])
-    )
+    child_low, child_high = ordered(tree.kinds, np.concatenate([low, upper_low]), np.concatenate([lower_high, high]))
     return child_low, child_high, np.concatenate([rows, rows])

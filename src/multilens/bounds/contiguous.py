@@ -71,9 +71,7 @@ def worth_of_depths(
     return np.clip((from_near + from_far) / 2, 0.0, stereo)
 
 
-def _least(
-    stereo: Float[np.ndarray, " z"], stretch: Float[np.ndarray, "n n"], price: float
-) -> Float[np.ndarray, " n"]:
+def _least(stereo: Float[np.ndarray, " z"], stretch: Float[np.ndarray, "n n"], price: float) -> Float[np.ndarray, " n"]:
     least = np.zeros(len(stereo) + 1)
     for end in range(1, len(least)):
         least[end] = min(least[end - 1] + stereo[end - 1], float((least[:end] + stretch[:end, end]).min()) + price)

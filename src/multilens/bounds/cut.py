@@ -15,13 +15,13 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from jaxtyping import Bool, Float, Int
+from jaxtyping import Float, Int
 
 FINE = 48.0
 """Nodes to half the width of the band of depths that a focus serves: the bound loses about 1.5 / (2 FINE)^2 of a saving."""
 
-MOST_NODES = 6000
-"""Of a grid of foci; beyond it the grid is coarser than FINE asks, which weakens the bound and nothing else."""
+MOST_PLACES = 60_000
+"""Nodes times depths of a grid of foci; beyond it the grid is coarser than is asked, which weakens the bound and nothing else."""
 
 FEWEST_NODES = 48
 
@@ -51,22 +51,28 @@ class Depths:
 
 @dataclass(frozen=True, eq=False)
 class FocusGrid:
-    """Foci from nearest to farthest, each with the depths it can serve at all, as rows padded to one length.
+    """Foci from nearest to farthest, each with a window of depths that holds all it can serve; the windows are equally long.
 
     Args:
         depth_index: which depths a focus may serve.
-        present: which of a row's places are not padding.
-        cost: no more than the weighted squared error at that depth of any focus that the node stands for, in a mean sense:
-            see `focus_grid`.
+        cost: weighted squared error of each node at each of its depths at an effective aperture of 1 mm, mm^4, lowered so
+            that the nodes stand for all foci between them: see `focus_grid`.
     """
 
     depth_index: Int[np.ndarray, "f s"]
-    present: Bool[np.ndarray, "f s"]
     cost: Float[np.ndarray, "f s"]
 
-    def saved(self, worth: Float[np.ndarray, " z"]) -> Float[np.ndarray, "f s"]:
-        """Give what each node saves at each of its depths, max(v - c, 0)."""
-        return np.maximum(worth[self.depth_index] - self.cost, 0.0) * self.present
+    def saved(self, worth: Float[np.ndarray, " z"], aperture: float) -> Float[np.ndarray, "f s"]:
+        """Give what each node saves at each of its depths with an effective aperture a, max(v - c / a^2, 0), mm^2."""
+        saved = self.cost * (-1 / aperture**2)
+        saved += worth if self.dense else worth[self.depth_index]
+        np.maximum(saved, 0.0, out=saved)
+        return saved
+
+    @cached_property
+    def dense(self) -> bool:
+        """Whether every node's window holds every depth."""
+        return bool((self.depth_index == np.arange(self.depth_index.shape[1])).all())
 
 
 def focus_grid(
@@ -85,32 +91,40 @@ def focus_grid(
     Args:
         depths: where the score is taken.
         worth: v, mm^2; the rows hold every depth at which it may exceed the cost.
-        aperture: a, effective, mm, > 0.
+        aperture: a, effective, mm, > 0, the largest for which the grid is used.
         focus_range: nearest and farthest focus, mm, > 0.
         fine: nodes to half the width of a typical band.
     """
-    slope = depths.slope / aperture**2
     # A focus u serves only depths with |Z - u| < half_band Z + d.
-    half_band = np.sqrt(worth / slope) / depths.depth
+    half_band = np.sqrt(worth / depths.slope) * (aperture / depths.depth)
+    widest = float(half_band.max())
     near, far = focus_range
     count = 1
     if far > near:
         typical = max(float(half_band @ worth) / max(float(worth.sum()), 1e-300), 1e-9)
-        count = int(np.clip(np.log(far / near) * fine / typical, FEWEST_NODES, MOST_NODES))
-    node = np.geomspace(near, far, count)
+        count = int(np.clip(np.log(far / near) * fine / typical, FEWEST_NODES, MOST_PLACES))
+    node, reach, index = _windows(depths.depth, focus_range, widest, count)
+    if index.size > MOST_PLACES and count > FEWEST_NODES:
+        count = max(FEWEST_NODES, MOST_PLACES // index.shape[1])
+        node, reach, index = _windows(depths.depth, focus_range, widest, count)
+    cost = depths.slope[index] * ((depths.depth[index] - node[:, None]) ** 2 - reach[:, None] ** 2)
+    return FocusGrid(index, cost)
+
+
+def _windows(
+    depth: Float[np.ndarray, " z"], focus_range: tuple[float, float], widest: float, count: int
+) -> tuple[Float[np.ndarray, " f"], Float[np.ndarray, " f"], Int[np.ndarray, "f s"]]:
+    """Give nodes u, half the way d to the farther neighbour of each, mm, and the depths with |Z - u| < widest Z + d."""
+    node = np.geomspace(*focus_range, count)
     # Rounded up, so that the reaches of two neighbours cover what lies between them.
     between = np.diff(node) / 2 * (1 + 1e-9)
     reach = np.maximum(np.append(between, 0.0), np.insert(between, 0, 0.0))
-    widest = float(half_band.max())
-    first = np.searchsorted(depths.depth, (node - reach) / (1 + widest) * (1 - 1e-9))
-    last = np.full(count, len(depths.depth))
+    first = np.searchsorted(depth, (node - reach) / (1 + widest) * (1 - 1e-9))
+    last = np.full(count, len(depth))
     if widest < 0.999:
-        last = np.searchsorted(depths.depth, (node + reach) / (1 - widest) * (1 + 1e-9), side="right")
-    index = first[:, None] + np.arange(max(1, int((last - first).max())))
-    present = index < last[:, None]
-    index = np.minimum(index, len(depths.depth) - 1)
-    cost = slope[index] * ((depths.depth[index] - node[:, None]) ** 2 - reach[:, None] ** 2)
-    return FocusGrid(index, present, cost)
+        last = np.searchsorted(depth, (node + reach) / (1 - widest) * (1 + 1e-9), side="right")
+    window = max(1, int((last - first).max()))
+    return node, reach, np.minimum(first, len(depth) - window)[:, None] + np.arange(window)
 
 
 def most_saved(
@@ -124,7 +138,7 @@ def most_saved(
         aperture: a, effective, mm, > 0.
         focus_range: nearest and farthest focus, mm, > 0.
     """
-    return float(focus_grid(depths, worth, aperture, focus_range).saved(worth).sum(1).max())
+    return float(focus_grid(depths, worth, aperture, focus_range).saved(worth, aperture).sum(1).max())
 
 
 def savings(
@@ -147,7 +161,8 @@ def savings(
         evaluated: at how many of them it is computed rather than interpolated.
     """
     at = np.unique(np.linspace(0, len(apertures) - 1, evaluated).round().astype(int))
-    found = np.array([most_saved(depths, worth, float(a), focus_range) for a in apertures[at]])
+    grid = focus_grid(depths, worth, float(apertures[-1]), focus_range)
+    found = np.array([grid.saved(worth, float(a)).sum(1).max() for a in apertures[at]])
     return np.interp(-(apertures**-2.0), -(apertures[at] ** -2.0), found)
 
 

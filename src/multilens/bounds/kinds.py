@@ -13,7 +13,7 @@ from multilens.cues import NANOMETRE
 from multilens.lens import Lens
 from multilens.problem import Problem
 
-NODES = 513
+NODES = 1025
 """Apertures from the smallest to the largest at which what depends on them is tabled."""
 
 

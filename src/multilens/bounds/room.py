@@ -18,6 +18,9 @@ MOST_EDGES = 24
 SAFE = 1e-9
 """Part of the back's size by which lengths are rounded up, far beyond what floats lose."""
 
+GRID = 160
+"""Squares along the longer side of a back that is not convex."""
+
 FINEST = 1e-4
 """Part of the back's size to which the largest body that fits is found."""
 
@@ -82,7 +85,8 @@ class Reach:
         """Give the reach of bodies that may stand anywhere.
 
         A body of radius r within lines n . x <= c has its centre within n . x <= c - r. A direction u = p n + q m, p, q >= 0, then
-        has no coordinate above p (c_n - r) + q (c_m - r). The least over all lines and pairs of lines counts.
+        has no coordinate above p (c_n - r) + q (c_m - r). The least over all lines and pairs of lines counts. Where the back has
+        a notch, parts or keep-outs, squares of a grid that may hold a centre are looked at too.
         """
         directions, support = _supports(back)
         normal, offset = _lines(back)
@@ -99,6 +103,8 @@ class Reach:
         reach = np.stack(
             [np.minimum(support - radius, (height - shrinking * radius).min(1, initial=inf)) for radius in radii]
         )
+        if back.keep_outs or not back.outline.core.equals(back.outline.core.convex_hull):
+            reach = np.minimum(reach, _reach_on_grid(back, radii))
         return cls(reach + SAFE * back.size)
 
     @classmethod
@@ -108,12 +114,30 @@ class Reach:
         return cls(np.repeat(support[None], len(radii), axis=0) + SAFE * back.size)
 
 
-def most_apart(
-    first: Float[np.ndarray, "m u"], second: Float[np.ndarray, "m u"]
-) -> Float[np.ndarray, " m"]:
+def most_apart(first: Float[np.ndarray, "m u"], second: Float[np.ndarray, "m u"]) -> Float[np.ndarray, " m"]:
     """Give no less than the distance that two centres can have, mm, from the reach of either in every direction."""
     apart = (first + np.roll(second, DIRECTIONS // 2, axis=1)).max(1)
     return np.maximum(apart, 0.0) / cos(pi / DIRECTIONS)
+
+
+def _reach_on_grid(back: Back, radii: Float[np.ndarray, " r"]) -> Float[np.ndarray, "r u"]:
+    """Give the largest coordinate of a square that may hold a centre, in each direction; minus infinity where none may."""
+    left, top, right, bottom = back.outline.bounds
+    half = max(right - left, bottom - top) / GRID / 2
+    x, y = np.meshgrid(np.arange(left + half, right + half, 2 * half), np.arange(top + half, bottom + half, 2 * half))
+    reach = half * 2**0.5
+    # Room changes no faster than one moves.
+    room = room_at(back, x.ravel(), y.ravel()) + reach + SAFE * back.size
+    most_room_first = np.argsort(-room, kind="stable")
+    most_room_first = most_room_first[room[most_room_first] >= radii.min()]
+    places = np.stack([x.ravel(), y.ravel()], axis=1)[most_room_first] - _middle(back)
+    enough = np.searchsorted(-room[most_room_first], -radii, side="right")
+    found = np.full((len(radii), DIRECTIONS), -inf)
+    if len(places):
+        for index, direction in enumerate(_directions()):
+            farthest = np.maximum.accumulate(places @ direction) + reach
+            found[:, index] = np.where(enough > 0, farthest[np.maximum(enough - 1, 0)], -inf)
+    return found
 
 
 def _directions() -> Float[np.ndarray, "u 2"]:
