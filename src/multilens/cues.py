@@ -119,13 +119,35 @@ class LensDefocus:
         self, layout: Layout, lenses: Sequence[Lens], depths: Float[Tensor, " z"]
     ) -> Float[Tensor, "*batch k z"]:
         """Give the depth error of every lens and tier, mm; it is zero where the depth is in focus."""
+        focal_length, radius, focus = (part.unsqueeze(-1) for part in self._tiers(layout, lenses))
+        return focused_sensitivity(depths, radius, focal_length, focus)
+
+    def slope_and_focus(
+        self, layout: Layout, lenses: Sequence[Lens]
+    ) -> tuple[Float[Tensor, "*batch k"], Float[Tensor, "*batch k"]]:
+        """Give h and Zf of every measurement: its error is Z h abs(Z - Zf).
+
+        Returns:
+            h = n / (2 A f), 1/mm, and Zf, mm.
+        """
+        focal_length, radius, focus = self._tiers(layout, lenses)
+        return 1 / (2 * radius * focal_length), focus
+
+    def _tiers(self, layout: Layout, lenses: Sequence[Lens]) -> tuple[Tensor, Tensor, Tensor]:
+        """Give focal length, aperture radius and focus of every measurement.
+
+        Sensitivity times noise: the focal length is counted in units of the noise, which saves a pass over all depths.
+        """
+        focal_length = _column([lens.focal_length / lens.blur_noise for lens in lenses], layout)
+        if all(lens.tiers == 1 for lens in lenses):
+            return focal_length.expand_as(layout.aperture_radius), layout.aperture_radius, layout.focus[..., 0]
         tiers = [(i, t) for i, lens in enumerate(lenses) for t in range(lens.tiers)]
         lens_index, tier_index = torch.tensor(tiers, dtype=torch.long, device=layout.position.device).T
-        # Sensitivity times noise: the focal length is counted in units of the noise, which saves a pass over all depths.
-        focal_length = _column([lens.focal_length / lens.blur_noise for lens in lenses], layout)[lens_index]
-        radius = layout.aperture_radius[..., lens_index].unsqueeze(-1)
-        focus = layout.focus[..., lens_index, tier_index].unsqueeze(-1)
-        return focused_sensitivity(depths, radius, focal_length.unsqueeze(-1), focus)
+        return (
+            focal_length[lens_index],
+            layout.aperture_radius[..., lens_index],
+            layout.focus[..., lens_index, tier_index],
+        )
 
 
 CUES = {"pair_stereo": PairStereo, "lens_defocus": LensDefocus}

@@ -2,7 +2,8 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from math import isfinite
+from functools import cached_property
+from math import inf, isfinite
 from typing import Protocol, runtime_checkable
 
 import torch
@@ -11,9 +12,10 @@ from torch import Tensor
 
 from multilens.back import Back
 from multilens.cues import Cue, FactoredCue, LensDefocus, Measurement, PairStereo
+from multilens.envelope import DepthMoments, mean_least_square
 from multilens.layout import Layout
 from multilens.lens import Lens
-from multilens.numerics import soft_maximum, soft_minimum
+from multilens.numerics import least
 
 
 def linear_depths(near: float, far: float, count: int = 512) -> Float[Tensor, " z"]:
@@ -51,7 +53,7 @@ def log_depths(near: float, far: float, count: int = 512) -> Float[Tensor, " z"]
 
 @runtime_checkable
 class Question(Protocol):
-    """What the search needs to know: the constraints, a smooth loss to descend and the exact score to claim."""
+    """What the search needs to know: the constraints, and the score as a differentiable function of the layout."""
 
     @property
     def back(self) -> Back:
@@ -73,12 +75,8 @@ class Question(Protocol):
         """Nearest and farthest in-focus depth of each lens, mm."""
         ...
 
-    def loss(self, layout: Layout, temperature: float) -> Float[Tensor, "*batch"]:
-        """Give the score made smooth; it tends to the score as the temperature goes to 0."""
-        ...
-
     def terms(self, layout: Layout) -> Float[Tensor, "*batch m"]:
-        """Give the numbers of which the largest is the score."""
+        """Give the numbers of which the largest is the score, differentiable by autograd."""
         ...
 
 
@@ -154,19 +152,46 @@ class Problem:
         return self.errors(layout).argmin(-2)
 
     def score(self, layout: Layout) -> Float[Tensor, "*batch"]:
-        """Give J, the weighted mean over the depths of the square of the least error, mm^2."""
-        return self._mean(self._squares(layout, 0).amin(-2))
+        """Give J, the weighted mean over the depths of the square of the least error, mm^2.
+
+        In closed form for the cues of the thesis (`multilens.envelope`), else over all depths; both agree up to rounding.
+        """
+        if not self.is_envelope:
+            return self.score_over_depths(layout)
+        self._refuse_other_lenses(layout)
+        position = layout.position
+        gain, slope, focus = (
+            position.new_full((*position.shape[:-2], 1), inf),
+            position.new_empty(0),
+            position.new_empty(0),
+        )
+        for cue in self.cues:
+            if isinstance(cue, PairStereo) and len(self.lenses) > 1:
+                gain = cue.gain(layout, self.lenses)
+            elif isinstance(cue, LensDefocus):
+                slope, focus = cue.slope_and_focus(layout, self.lenses)
+        return mean_least_square(gain.amin(-1), slope, focus, self._moments.to(position.device))
+
+    def score_over_depths(self, layout: Layout) -> Float[Tensor, "*batch"]:
+        """Give the score by the error of every cue at every depth, as any cue allows; pairs of a factored cue count as one."""
+        return self._mean(least(self._squares(layout)))
+
+    @cached_property
+    def is_envelope(self) -> bool:
+        """Whether the cues are the thesis' alone, each at most once, so that the score has a closed form."""
+        kinds = [type(cue) for cue in self.cues]
+        return set(kinds) <= {PairStereo, LensDefocus} and len(kinds) == len(set(kinds))
+
+    @cached_property
+    def _moments(self) -> DepthMoments:
+        return DepthMoments(self.depths, self.weights)
 
     def terms(self, layout: Layout) -> Float[Tensor, "*batch 1"]:
         """Give the score alone."""
         return self.score(layout).unsqueeze(-1)
 
-    def loss(self, layout: Layout, temperature: float) -> Float[Tensor, "*batch"]:
-        """Give the score with a soft minimum of the squared errors, mm^2; never above the score, equal to it at temperature 0."""
-        return self._mean(soft_minimum(self._squares(layout, temperature), temperature))
-
-    def _squares(self, layout: Layout, temperature: float) -> Float[Tensor, "*batch c z"]:
-        """Give the squared errors; of a factored cue only the (soft) minimum of its measurements, one curve for all."""
+    def _squares(self, layout: Layout) -> Float[Tensor, "*batch c z"]:
+        """Give the squared errors; of a factored cue only the least, one curve for all its measurements."""
         self._refuse_other_lenses(layout)
         depths = self.depths.to(layout.position)
         squares = []
@@ -174,9 +199,8 @@ class Problem:
             if not cue.measurements(self.lenses):
                 continue
             if isinstance(cue, FactoredCue):
-                gains = cue.gain(layout, self.lenses).square().unsqueeze(-1)
-                least = soft_minimum(gains, temperature) if temperature else gains.amin(-2)
-                squares.append((least * cue.shape(depths).square()).unsqueeze(-2))
+                gain = cue.gain(layout, self.lenses).amin(-1, keepdim=True)
+                squares.append((gain * cue.shape(depths)).square().unsqueeze(-2))
             else:
                 squares.append(cue(layout, self.lenses, depths).square())
         return torch.cat(squares, dim=-2)
@@ -232,12 +256,6 @@ class ScoreProblem:
     def score(self, layout: Layout) -> Float[Tensor, "*batch"]:
         """Give the largest of the terms."""
         return self.terms(layout).amax(-1)
-
-    def loss(self, layout: Layout, temperature: float) -> Float[Tensor, "*batch"]:
-        """Give a soft maximum of the terms whose width is the temperature times the largest of them."""
-        terms = self.terms(layout)
-        scale = terms.detach().abs().amax(-1).clamp(min=torch.finfo(terms.dtype).tiny)
-        return soft_maximum(terms / scale.unsqueeze(-1), temperature) * scale
 
 
 def _refuse_unless_depth_range(near: float, far: float, count: int) -> None:

@@ -269,7 +269,7 @@ def origin_record(origin: Origin) -> Record:
     return {
         "seed": int(origin.seed),
         "starts": int(origin.starts),
-        "polished": int(origin.polished),
+        "patience": int(origin.patience),
         "penalty": origin.penalty,
         "time_limit": None if origin.time_limit is None else float(origin.time_limit),
         "versions": dict(sorted(origin.versions.items())),
@@ -279,15 +279,15 @@ def origin_record(origin: Origin) -> Record:
 
 def read_origin(value: object, name: str) -> Origin:
     """Read what `origin_record` gives."""
-    fields = record(value, name, ("seed", "starts", "polished", "penalty", "time_limit", "versions", "commit"))
-    seed, starts, polished = (whole_number(fields[key], f"{name}.{key}") for key in ("seed", "starts", "polished"))
+    fields = record(value, name, ("seed", "starts", "patience", "penalty", "time_limit", "versions", "commit"))
+    seed, starts, patience = (whole_number(fields[key], f"{name}.{key}") for key in ("seed", "starts", "patience"))
     time_limit, versions, commit = fields["time_limit"], fields["versions"], fields["commit"]
     if not isinstance(versions, dict):
         raise ValueError(f"{name}.versions must be a record, got {versions!r:.40}")
     return Origin(
         seed,
         starts,
-        polished,
+        patience,
         text(fields["penalty"], f"{name}.penalty"),
         None if time_limit is None else number(time_limit, f"{name}.time_limit"),
         {library: text(version, f"{name}.versions.{library:.40}") for library, version in versions.items()},

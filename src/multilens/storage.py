@@ -21,8 +21,8 @@ class Origin:
 
     Args:
         seed: of the starts.
-        starts: how many descended.
-        polished: how many of the best were polished at most.
+        starts: how many fresh layouts it began with.
+        patience: waves without progress after which it ended.
         penalty: name of the penalty.
         time_limit: s, or None.
         versions: of Python and the libraries.
@@ -31,7 +31,7 @@ class Origin:
 
     seed: int
     starts: int
-    polished: int
+    patience: int
     penalty: str
     time_limit: float | None
     versions: dict[str, str] = field(default_factory=dict)

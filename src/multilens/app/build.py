@@ -63,7 +63,7 @@ def check(config: Config) -> None:
         given = ", ".join(cue.name for cue in config.cues.names) or "none"
         raise RefusedError(f"cues.names must be at least one of stereo and defocus, each once, got {given}")
     _refuse_unless_count("search.starts", config.search.starts, 1, MOST_STARTS)
-    _refuse_unless_count("search.polished", config.search.polished, 1, MOST_STARTS)
+    _refuse_unless_count("search.patience", config.search.patience, 0, MOST_STARTS)
     _refuse_unless_count("search.seed", config.search.seed, 0, 2**31 - 1)
     limit = config.search.time_limit
     if limit is not None and not (isfinite(limit) and limit > 0):

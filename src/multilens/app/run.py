@@ -113,7 +113,7 @@ def _search(config: DictConfig, log: list[str], visible: bool) -> "Design":
                 starts=asked.starts,
                 seed=asked.seed,
                 time_limit=asked.time_limit,
-                polished=asked.polished,
+                patience=asked.patience,
                 penalty=penalties[given.penalty.name],
                 listener=listener,
             )

@@ -167,13 +167,13 @@ class SearchConfig:
 
     Args:
         starts: how many descend.
-        polished: how many of the best are polished.
+        patience: waves of variations without progress after which the search ends.
         seed: of the starts.
         time_limit: s; null for none.
     """
 
     starts: int = MISSING
-    polished: int = MISSING
+    patience: int = MISSING
     seed: int = 0
     time_limit: float | None = None
 

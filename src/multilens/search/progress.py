@@ -3,17 +3,20 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from multilens.layout import Layout
+
 
 @dataclass(frozen=True)
 class Progress:
     """How far a search has come.
 
     Args:
-        stage: "descent" (all starts at once) or "polish" (the best, one by one).
+        stage: "starts" (fresh ones, a batch at a time), "variations" (of the best so far) or "polish" (the last digits).
         done: part of the stage that is done, 0 to 1.
-        starts: how many starts there are.
+        starts: how many fresh starts there have been so far.
         alive: how many of them are healthy.
-        best: score of the best nearly feasible layout so far, mm^2; NaN while there is none.
+        best: score of the best layout so far that is proved feasible, mm^2; NaN while there is none.
+        layout: that layout; None while there is none.
         seconds_left: estimate until the end, s.
     """
 
@@ -22,6 +25,7 @@ class Progress:
     starts: int
     alive: int
     best: float
+    layout: Layout | None
     seconds_left: float
 
 

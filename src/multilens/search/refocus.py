@@ -4,41 +4,100 @@ import torch
 from jaxtyping import Float
 from torch import Tensor
 
-from multilens.problem import Question
+from multilens.cues import LensDefocus, PairStereo
+from multilens.problem import Problem, Question
 from multilens.search.variables import Variables
 
-VALUES = 192
-"""Tried for each focus, by equal factors over its range; finer than the band of depths in which one lens can win."""
+VALUES = 128
+"""Tried for each focus, by equal factors over its range."""
 
-SWEEPS = 8
-"""Through all foci, at most; two or three are enough as a rule."""
+SWEEPS = 2
+"""Through all foci; more change little, and the next wave comes anyway."""
+
+MOST_AT_ONCE = 4096
+"""Layouts tried together where every cue has to be asked."""
 
 
-def refocus(question: Question, variables: Variables, x: Float[Tensor, " d"]) -> Float[Tensor, " d"]:
-    """Improve the foci of one vector by trying values for one at a time, until a whole sweep changes nothing.
+def refocus(
+    question: Question,
+    variables: Variables,
+    share: Float[Tensor, "b v"],
+    order: Float[Tensor, " f"],
+    afresh: bool = False,
+) -> Float[Tensor, "b v"]:
+    """Improve the foci of each layout by trying values for one at a time.
 
-    A gradient moves a focus only as far as the next lens' band of depths. Here it can jump over it. The score never gets worse.
+    A gradient moves a focus only as far as the next lens' band of depths. Here it can jump over it. The score never gets
+    worse, unless afresh.
 
     Args:
         question: what is asked.
         variables: how a vector becomes a layout.
-        x: one vector.
-
-    Returns:
-        The vector with other foci.
+        share: the layouts, every unknown.
+        order: one number for each focus; those of less come first.
+        afresh: begin as if no lens were focused anywhere, so that each takes the best of what the ones before it left.
     """
-    foci = (variables.free >= variables.focus_start).nonzero().flatten().tolist()
-    values = torch.linspace(0, 1, VALUES).to(x)
-    score = question.terms(variables.layout(x)).amax()
-    for _ in range(SWEEPS):
-        before = score
-        for element in foci:
-            tried = x.repeat(VALUES, 1)
-            tried[:, element] = values
-            scores = question.terms(variables.layout(tried)).amax(-1)
-            best = scores.argmin()
-            if scores[best] < score:
-                x, score = tried[best], scores[best]
-        if not score < before:
-            break
-    return x
+    foci = [f for f in order.argsort().tolist() if variables.free.eq(variables.focus_start + f).any()]
+    if not foci:
+        return share
+    if isinstance(question, Problem) and question.is_envelope:
+        return _by_lines(question, variables, share, foci, afresh)
+    for element in (variables.focus_start + f for _ in range(SWEEPS) for f in foci):
+        share = _one_by_one(question, variables, share, element)
+    return share
+
+
+def _one_by_one(question: Question, variables: Variables, share: Tensor, element: int) -> Tensor:
+    """Try every value of one focus by asking the question for each."""
+    values = torch.linspace(0, 1, VALUES).to(share)
+    best = []
+    with torch.no_grad():
+        for layouts in share.split(max(1, MOST_AT_ONCE // VALUES)):
+            tried = layouts.unsqueeze(1).repeat(1, VALUES + 1, 1)
+            tried[:, :-1, element] = values
+            scores = question.terms(variables.layout_of(tried)).amax(-1).nan_to_num(nan=torch.inf)
+            best.append(tried[torch.arange(len(tried)), scores.argmin(-1)])
+    return torch.cat(best)
+
+
+def _by_lines(problem: Problem, variables: Variables, share: Tensor, foci: list[int], afresh: bool) -> Tensor:
+    """Try every value of one focus against the envelope of all other cues, divided by the depth."""
+    defocus = next((cue for cue in problem.cues if isinstance(cue, LensDefocus)), None)
+    if defocus is None:
+        return share
+    layout = variables.layout_of(share)
+    # Measurements of defocus are in the order of the foci: lens by lens, tier by tier.
+    slope, zf = defocus.slope_and_focus(layout, problem.lenses)
+    # Single precision, with lengths of about 1, is plenty to choose between values.
+    kind = torch.float32
+    depths, weights = problem.depths.to(share), problem.weights.to(share)
+    unit = depths.max()
+    line, weight = (depths / unit).to(kind), (weights * (depths / unit).square()).to(kind)
+    steep = slope.amax(-1, keepdim=True)
+    slope = (slope / steep).to(kind)
+    stereo = line.new_full((len(share), len(depths)), 1e15)
+    for cue in problem.cues:
+        if isinstance(cue, PairStereo) and len(problem.lenses) > 1:
+            stereo = (cue.gain(layout, problem.lenses).amin(-1, keepdim=True) / steep).to(kind) * line
+    curves = slope.unsqueeze(-1) * (line - (zf / unit).to(kind).unsqueeze(-1)).abs()
+    if afresh:
+        curves = torch.full_like(curves, 1e15)
+    share = share.clone()
+    values = torch.linspace(0, 1, VALUES).to(share)
+    near, far = variables.low[variables.focus_start :], variables.high[variables.focus_start :]
+    for sweep in range(SWEEPS):
+        for focus in foci:
+            others = stereo.clone()
+            for other in range(curves.shape[1]):
+                if other != focus:
+                    torch.minimum(others, curves[:, other], out=others)
+            tried = (near[focus] * (far[focus] / near[focus]) ** values / unit).to(kind)
+            shapes = (line - tried.unsqueeze(-1)).abs()
+            least = torch.minimum(others.unsqueeze(1), slope[:, focus, None, None] * shapes)
+            best, at = (least.mul_(least) @ weight).min(-1)
+            now = torch.minimum(others, curves[:, focus]).square() @ weight
+            better = (best < now * (1 - 1e-6)) | (afresh and sweep == 0)
+            element = variables.focus_start + focus
+            share[:, element] = torch.where(better, values[at], share[:, element])
+            curves[:, focus] = torch.where(better.unsqueeze(-1), slope[:, focus, None] * shapes[at], curves[:, focus])
+    return share

@@ -1,4 +1,4 @@
-"""Solve a question: many starts descend, the best are polished, and the best of those is proved feasible."""
+"""Solve a question: fresh starts first, then variations of the best, wave by wave; the best of all is polished and proved."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -8,54 +8,76 @@ from time import monotonic
 import torch
 from torch import Tensor
 
-from multilens.certificate import Certificate
 from multilens.convergence import Convergence
 from multilens.design import COMPLETE, INFEASIBLE, OUT_OF_TIME, Design, Origin
 from multilens.layout import Layout
 from multilens.penalty import Price, distance_penalty
 from multilens.problem import Question
-from multilens.search.descent import Descent, DescentSettings, descend
+from multilens.search.barrier import BarrierSettings, Settled, settle
 from multilens.search.fit import why_nothing_fits
 from multilens.search.legalise import legalise
+from multilens.search.limits import Limits
+from multilens.search.parting import part
 from multilens.search.polish import OutOfTimeError, polish
+from multilens.search.pool import Candidate, Elite
 from multilens.search.progress import Listener, Progress
 from multilens.search.refocus import refocus
-from multilens.search.starts import scattered_starts
+from multilens.search.sight import Seer
+from multilens.search.starts import scattered_starts, tried_places
 from multilens.search.threads import one_thread
+from multilens.search.tighten import tighten
 from multilens.search.variables import Variables
+from multilens.search.variation import Varier
 from multilens.storage import source_commit, versions
 
-DESCENT_SHARE = 0.5
-"""Part of a time limit that the descent may take; the polish, which makes a layout feasible, has the rest."""
+FROM_AFAR = BarrierSettings(steps=50, pressure=(0.1, 1e-7))
+FROM_NEARBY = BarrierSettings(steps=35, pressure=(0.01, 1e-7))
 
-ALIKE = 1e-4
-"""Starts whose penalised scores differ by less than about this part count as the same layout, and one of them is polished."""
+BATCH = 32
+"""Layouts that settle together: as many as the processor takes hardly longer for than for one."""
 
-ROUGH = 1e-9
-"""Part of the score to which all candidates are polished; the best of them is then polished to the end."""
+MOST_ELITE = 8
+"""Layouts that are varied."""
+
+WORTH_A_POLISH = 2e-3
+"""By how much, in the logarithm of the score, a layout may be behind the best and yet be polished."""
+
+ALIKE = 3e-5
+"""Difference of that below which two layouts came to the same place, and one of them is polished."""
+
+PROGRESS = 1e-5
+"""Part of the score that counts as progress: less is the polish's business."""
+
+ROUGH = 1e-10
+"""Part of the score to which a layout is polished during the search; the best is polished to the end."""
 
 
 def solve(
     problem: Question,
-    starts: int = 128,
+    starts: int = 64,
     seed: int = 0,
     time_limit: float | None = None,
-    polished: int = 16,
+    patience: int = 8,
     penalty: Callable[[Question], Price] = distance_penalty,
-    descent: DescentSettings | None = None,
+    batch: int = BATCH,
+    device: str | torch.device = "cpu",
+    dtype: torch.dtype = torch.float64,
     listener: Listener = lambda progress: None,
 ) -> Design:
     """Find the layout that answers a question best.
 
     Args:
         problem: what is asked.
-        starts: how many layouts descend at once, >= 1.
-        seed: of the starts; the same seed on the same machine gives the same design to the bit, unless time ran out.
+        starts: how many fresh layouts to begin with, >= 1.
+        seed: of the starts and the variations; the same seed on the same machine gives the same design to the bit, unless
+            time ran out.
         time_limit: after which the best so far is given, s; None waits to the end.
-        polished: how many of the best distinct starts are polished, >= 1.
-        penalty: what a start pays for room that is not there: `distance_penalty` or `area_penalty`.
-        descent: how the starts go from rough to fine; None takes the defaults.
-        listener: told of the progress some sixty times and after every polish.
+        patience: waves of variations without progress after which the search ends, >= 0.
+        penalty: by what overlapping starts are parted: `distance_penalty` or `area_penalty`.
+        batch: layouts computed together, >= 1: more need more memory, and make the most of a GPU.
+        device: where the waves are computed; the polish and the proof run on the processor.
+        dtype: in which the waves are computed; the polish is in float64.
+        listener: told of the progress after every wave.
 
     Returns:
         The best feasible design; or, with the status "infeasible" and a reason, the layout that came nearest to being so.
@@ -64,125 +86,185 @@ def solve(
         ValueError: a number is out of its range.
         RuntimeError: no start stayed healthy: every one met a score or a gradient that is not finite.
     """
-    for name, number in (("starts", starts), ("polished", polished)):
-        if number < 1:
-            raise ValueError(f"{name} must be >= 1, got {number}")
+    for name, number, least in (("starts", starts, 1), ("patience", patience, 0), ("batch", batch, 1)):
+        if number < least:
+            raise ValueError(f"{name} must be >= {least}, got {number}")
     if time_limit is not None and not time_limit > 0:
         raise ValueError(f"time_limit must be > 0 s, got {time_limit:g}")
-    origin = Origin(
-        seed, starts, polished, getattr(penalty, "__name__", repr(penalty)), time_limit, versions(), source_commit()
-    )
-    began = monotonic()
-    variables = Variables(problem)
-    x = scattered_starts(problem, variables, starts, seed)
+    end = inf if time_limit is None else monotonic() + time_limit
+    name = getattr(penalty, "__name__", repr(penalty))
+    origin = Origin(seed, starts, patience, name, time_limit, versions(), source_commit())
     reason = why_nothing_fits(problem)
     if reason is not None:
-        layout, certificate = legalise(problem, variables.layout(x[0]))
+        variables = Variables(problem)
+        layout, certificate = legalise(problem, variables.layout(scattered_starts(problem, variables, 1, seed)[0]))
         return Design(problem, layout, INFEASIBLE, reason, certificate, origin=origin)
-
-    settings = descent or DescentSettings()
-    end = inf if time_limit is None else began + time_limit
     with one_thread():
-        descended = _descend_all(problem, x, settings, penalty, began, end, listener)
-        order = _best_first(descended, settings.penalty[1])[:polished]
-        best, scores, in_time = _polish_each(problem, variables, descended, order, end, listener)
-    convergence = Convergence(descended.history_steps, descended.history, tuple(order), tuple(scores))
+        search = _Search(problem, Variables(problem, dtype, device), penalty, seed, end, listener)
+        search.open(starts, batch)
+        search.vary(patience, batch)
+        search.finish()
+    best = search.best
+    convergence = search.convergence
     if best.certificate.feasible:
-        status = COMPLETE if in_time else OUT_OF_TIME
+        status = OUT_OF_TIME if search.out_of_time else COMPLETE
         return Design(problem, best.layout, status, "", best.certificate, convergence, origin)
     tightest = best.certificate.tightest
-    searched = "" if in_time else f" in {time_limit:g} s"
+    searched = f" in {time_limit:g} s" if search.out_of_time else ""
     reason = f"no feasible layout found{searched}: at best {tightest.what} lacks {-tightest.room:.4g} mm"
     return Design(problem, best.layout, INFEASIBLE, reason, best.certificate, convergence, origin)
 
 
-@dataclass(frozen=True)
-class _Candidate:
-    """A layout as it would be claimed: rounded, certified, scored (NaN if infeasible)."""
+@dataclass
+class _Tally:
+    """What the record of a search is made of."""
 
-    x: Tensor
-    layout: Layout
-    certificate: Certificate
-    score: float
-
-    @classmethod
-    def of(cls, problem: Question, variables: Variables, x: Tensor) -> "_Candidate":
-        layout, certificate = legalise(problem, variables.layout(x))
-        return cls(x, layout, certificate, problem.terms(layout).amax().item() if certificate.feasible else nan)
-
-    def better_than(self, other: "_Candidate") -> bool:
-        """Whether it scores less; among infeasible ones, whether it lacks less."""
-        if self.certificate.feasible and other.certificate.feasible:
-            return self.score < other.score
-        if self.certificate.feasible or other.certificate.feasible:
-            return self.certificate.feasible
-        return self.certificate.tightest.room > other.certificate.tightest.room
+    histories: list[Tensor]
+    polished: list[int]
+    scores: list[float]
 
 
-def _descend_all(
-    problem: Question,
-    x: Tensor,
-    settings: DescentSettings,
-    penalty: Callable[[Question], Price],
-    began: float,
-    end: float,
-    listener: Listener,
-) -> Descent:
-    half_time = began + DESCENT_SHARE * (end - began)
+class _Search:
+    """One search on its way: the best so far, and what the next wave begins from."""
 
-    def go_on(step: int, alive: int, best: float) -> bool:
+    def __init__(
+        self,
+        question: Question,
+        variables: Variables,
+        penalty: Callable[[Question], Price],
+        seed: int,
+        end: float,
+        listener: Listener,
+    ) -> None:
+        self.question, self.variables, self.seed, self.end, self.listener = question, variables, seed, end, listener
+        self.began = monotonic()
+        self.exact = Variables(question)
+        self.limits = Limits(question)
+        self.seer = Seer(question, variables)
+        self.price = penalty(question)
+        self.generator = torch.Generator().manual_seed(seed)
+        self.elite = Elite(MOST_ELITE)
+        self.incumbent: Candidate | None = None
+        self.best_value = inf
+        self.polished_values: list[float] = []
+        self.out_of_time = False
+        self.alive = 0
+        self.tally = _Tally([], [], [])
+
+    @property
+    def best(self) -> Candidate:
+        """The best layout so far, as it would be claimed."""
+        assert self.incumbent is not None
+        return self.incumbent
+
+    @property
+    def convergence(self) -> Convergence:
+        """How the fresh starts came down."""
+        longest = max(history.shape[1] for history in self.tally.histories)
+        rows = [
+            torch.cat([history, history[:, -1:].expand(-1, longest - history.shape[1])], dim=-1)
+            for history in self.tally.histories
+        ]
+        return Convergence(tuple(range(longest)), torch.cat(rows), tuple(self.tally.polished), tuple(self.tally.scores))
+
+    def open(self, starts: int, batch: int) -> None:
+        """Settle fresh starts, a batch at a time."""
+        vectors = scattered_starts(self.question, self.exact, starts, self.seed)
+        share = self.exact.spread(vectors).to(self.variables.low)
+        radii = slice(2 * self.exact.count, self.exact.focus_start)
+        share[:, radii] *= 0.5
+        for first in range(0, starts, batch):
+            if self._late():
+                break
+            share_of_batch = share[first : first + batch]
+            share_of_batch = part(self.variables, self.price, share_of_batch)
+            settled = self._settle(share_of_batch, FROM_AFAR, afresh=True)
+            self.tally.histories.append(self._scores(settled.history))
+            self.alive += int(settled.value.isfinite().sum())
+            self._take(settled, first)
+            self._tell("starts", min(first + batch, starts) / starts, starts)
+        if not self.alive:
+            raise RuntimeError(f"none of the {starts} starts stayed healthy: scores or gradients were not finite")
+
+    def vary(self, patience: int, batch: int) -> None:
+        """Settle variations of the best until there is no progress for a while."""
+        lens = min(self.question.lenses, key=lambda lens: lens.least_body_radius)
+        tried, room = tried_places(self.question.back, self.seed)
+        varier = Varier(self.variables, tried[room >= lens.least_body_radius], self.generator)
+        idle = 0
+        while idle < patience and len(self.elite.value) and not self._late():
+            before = self.best_value
+            settled = self._settle(varier(self.elite.share, batch), FROM_NEARBY, afresh=False)
+            self._take(settled, None)
+            idle = 0 if self.best_value < before - PROGRESS else idle + 1
+            self._tell("variations", idle / patience, self.alive)
+
+    def finish(self) -> None:
+        """Polish the best to the end."""
+        if self.incumbent is None or self._late():
+            return
+        try:
+            x = polish(self.question, self.exact, self.exact.vector(self.best.layout), self.end)
+        except OutOfTimeError:
+            self.out_of_time = True
+            return
+        self._claim(self.exact.layout(x))
+        self._tell("polish", 1.0, self.alive)
+
+    def _settle(self, share: Tensor, settings: BarrierSettings, afresh: bool) -> Settled:
+        order = torch.rand(share.shape[1] - self.variables.focus_start, generator=self.generator)
+        share = refocus(self.question, self.variables, share, order, afresh)
+        # The first answer is waited for; whatever comes after it is not.
+        return settle(self.seer, share, settings, lambda: self.incumbent is None or not self._late())
+
+    def _take(self, settled: Settled, first: int | None) -> None:
+        """Add what a wave found, and polish the best of it if that may be the best of all."""
+        healthy = settled.value.isfinite()
+        merit = torch.where(settled.feasible & healthy, settled.value, torch.inf)
+        self.elite.add(settled.share, merit)
+        at = int(merit.argmin())
+        if not merit[at].isfinite():
+            # Better one that lacks a little room than none.
+            at = int(torch.where(healthy, settled.missing, torch.inf).argmin())
+        elif merit[at] > self.best_value + WORTH_A_POLISH:
+            return
+        self.best_value = min(self.best_value, float(merit[at]))
+        if any(abs(float(merit[at]) - value) < ALIKE for value in self.polished_values):
+            return
+        self.polished_values.append(float(merit[at]))
+        layout = self.exact.layout_of(settled.share[at].cpu().double())
+        claimed = self._claim(tighten(self.limits, layout))
+        if self._late():
+            return
+        try:
+            x = polish(self.question, self.exact, self.exact.vector(layout), self.end, ROUGH)
+        except OutOfTimeError:
+            self.out_of_time = True
+            return
+        polished = self._claim(self.exact.layout(x))
+        if first is not None:
+            self.tally.polished.append(first + at)
+            self.tally.scores.append(polished.score if polished.certificate.feasible else claimed.score)
+
+    def _claim(self, layout: Layout) -> Candidate:
+        candidate = Candidate.of(self.question, layout)
+        if candidate.better_than(self.incumbent):
+            self.incumbent = candidate
+        return candidate
+
+    def _scores(self, history: Tensor) -> Tensor:
+        return history.exp() if self.seer.scale is None else history * self.seer.scale
+
+    def _late(self) -> bool:
+        self.out_of_time |= monotonic() > self.end
+        return self.out_of_time
+
+    def _tell(self, stage: str, done: float, starts: int) -> None:
+        feasible = self.incumbent is not None and self.incumbent.certificate.feasible
+        layout = self.incumbent.layout if feasible and self.incumbent is not None else None
+        score = self.incumbent.score if feasible and self.incumbent is not None else nan
         now = monotonic()
-        whole = settings.steps / max(step, 1) * (now - began) / DESCENT_SHARE
-        listener(Progress("descent", step / settings.steps, len(x), alive, best, min(began + whole, end) - now))
-        return now < half_time or step == 0
-
-    # Single precision is twice as fast and plenty to tell basins apart; the polish goes on in double.
-    variables = Variables(problem, torch.float32)
-    descended = descend(problem, variables, penalty(problem), x.float(), settings, go_on)
-    if not descended.score.isfinite().any():
-        raise RuntimeError(f"none of the {len(x)} starts stayed healthy: scores or gradients were not finite")
-    return descended
-
-
-def _best_first(descended: Descent, weight: float) -> list[int]:
-    """Give the healthy starts in order of score and penalty, of those that came to the same place only one."""
-    scale = descended.score.abs().nanmedian().clamp(min=torch.finfo(descended.score.dtype).tiny)
-    merit = descended.score.sign() * (descended.score.abs() / scale).log1p() + weight * descended.price
-    kept: list[int] = []
-    for index in merit.argsort().tolist():
-        if merit[index].isfinite() and (not kept or merit[index] - merit[kept[-1]] > ALIKE):
-            kept.append(index)
-    return kept
-
-
-def _polish_each(
-    problem: Question,
-    variables: Variables,
-    descended: Descent,
-    order: list[int],
-    end: float,
-    listener: Listener,
-) -> tuple[_Candidate, list[float], bool]:
-    """Polish the starts in order until the end; give the best layout, every score, and whether there was time for all."""
-    x, scores = descended.x.double(), []
-    best = _Candidate.of(problem, variables, x[order[0]])
-    # Should time run out before the first polish, the best of those that are feasible as they are is still an answer.
-    for index in order[1:]:
-        if best.certificate.feasible or monotonic() > end:
-            break
-        candidate = _Candidate.of(problem, variables, x[index])
-        best = candidate if candidate.better_than(best) else best
-    began, alive = monotonic(), int(descended.score.isfinite().sum())
-    try:
-        for done, index in enumerate(order, start=1):
-            polished = polish(problem, variables, refocus(problem, variables, x[index]), end, ROUGH)
-            candidate = _Candidate.of(problem, variables, polished)
-            scores.append(candidate.score)
-            best = candidate if candidate.better_than(best) else best
-            now = monotonic()
-            left = min((now - began) / done * (len(order) - done), end - now)
-            listener(Progress("polish", done / len(order), len(x), alive, best.score, left))
-        finest = _Candidate.of(problem, variables, polish(problem, variables, best.x, end))
-    except OutOfTimeError:
-        return best, scores, False
-    return finest if finest.better_than(best) else best, scores, True
+        left = (
+            min((now - self.began) * (1 / max(done, 1e-3) - 1), self.end - now) if stage == "starts" else self.end - now
+        )
+        self.listener(Progress(stage, done, starts, self.alive, score, layout, left))

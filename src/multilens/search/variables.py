@@ -68,7 +68,14 @@ class Variables:
 
     def layout(self, x: Float[Tensor, "*batch d"]) -> Layout:
         """Give the layout that a vector stands for, differentiable."""
-        share = x.new_zeros(*x.shape[:-1], len(self.low)).index_copy(-1, self.free, x)
+        return self.layout_of(self.spread(x))
+
+    def spread(self, x: Float[Tensor, "*batch d"]) -> Float[Tensor, "*batch v"]:
+        """Give x with a 0 for each unknown that is not free."""
+        return x.new_zeros(*x.shape[:-1], len(self.low)).index_copy(-1, self.free, x)
+
+    def layout_of(self, share: Float[Tensor, "*batch v"]) -> Layout:
+        """Give the layout of a vector that has every unknown, free or not, differentiable."""
         n, start = self.count, self.focus_start
         linear = self.low[:start] + share[..., :start] * (self.high - self.low)[:start]
         near, far = self.low[start:], self.high[start:]
