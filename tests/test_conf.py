@@ -49,7 +49,7 @@ def test_the_default_search_is_that_of_solve():
 
     config = composed()
     defaults = {name: parameter.default for name, parameter in signature(solve).parameters.items()}
-    assert (config.search.starts, config.search.polished) == (defaults["starts"], defaults["polished"])
+    assert (config.search.starts, config.search.patience) == (defaults["starts"], defaults["patience"])
 
 
 def test_no_file_names_a_class_but_the_table_of_a_sweep():

@@ -3,8 +3,8 @@
 A page is run from top to bottom in a folder of its own. A `yaml` block is written to the file that the line before it names, the
 `python` blocks of a page share their names, and a command exits with 0 unless a comment after it says otherwise.
 
-To stay within a minute, a command that searches is run with the overrides in QUICK, unless the page sets them itself, and with
-fewer steps: so of its output the form is compared, not the numbers. Its pictures are drawn coarsely, and in a sweep not at all.
+To stay within a minute, a command that searches is run with the overrides in QUICK, unless the page sets them itself: so of its
+output the form is compared, not the numbers. Its pictures are drawn coarsely, and in a sweep not at all.
 Shapes are not enforced here, where time counts: every other test does that.
 """
 
@@ -13,7 +13,6 @@ import shlex
 import tomllib
 from collections.abc import Iterator
 from dataclasses import dataclass, fields, is_dataclass
-from functools import partial
 from itertools import pairwise
 from pathlib import Path
 from types import UnionType
@@ -25,14 +24,11 @@ import pytest
 from multilens.app.command import run_command
 from multilens.app.compose import config_folder
 from multilens.app.schema import Config, LensConfig, ShapeConfig
-from multilens.search.descent import DescentSettings
 
 ROOT = Path(__file__).parents[1]
 PAGES = [ROOT / name for name in ("README.md", "CONTRIBUTING.md", "CHANGELOG.md")] + sorted(ROOT.glob("docs/*.md"))
 
-QUICK = {"search.starts": "4", "search.polished": "1", "depth.count": "24"}
-
-STEPS = 40
+QUICK = {"search.starts": "4", "search.patience": "0", "depth.count": "24"}
 
 BLOCK = re.compile(r"^```(\w*)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
 NUMBER = re.compile(r"-?\d+(\.\d+)?(e[+-]?\d+)?")
@@ -129,7 +125,6 @@ def form(output: str) -> str:
 def test_the_commands_of_a_page_do_what_it_says(
     page: Path, elsewhere: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ):
-    monkeypatch.setattr("multilens.search.solve.DescentSettings", partial(DescentSettings, steps=STEPS))
     monkeypatch.setattr("multilens.plot.figures.DOTS_PER_INCH", 20)
     for path, text in files(page).items():
         (elsewhere / path).parent.mkdir(parents=True, exist_ok=True)

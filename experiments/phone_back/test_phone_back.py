@@ -63,4 +63,4 @@ def test_no_foci_on_a_grid_are_better_for_apples_places(designs: dict[str, ml.De
 
 def test_a_search_of_today_finds_apples_foci_again(designs: dict[str, ml.Design]) -> None:
     design = designs["apple"]
-    assert ml.solve(design.problem, starts=16, polished=4).score <= design.score * (1 + 1e-4)
+    assert ml.solve(design.problem, starts=16, patience=2).score <= design.score * (1 + 1e-4)

@@ -72,7 +72,7 @@ def on_line(gap: torch.Tensor, focus: torch.Tensor) -> Arrangement:
 
 
 def solved(depths: torch.Tensor, ratio: float, stereo: ml.PairStereo | GapStereo) -> Arrangement:
-    design = ml.solve(line_problem(depths, ratio, stereo), starts=32, seed=0, polished=4)
+    design = ml.solve(line_problem(depths, ratio, stereo), starts=32, seed=0, patience=2)
     assert design.feasible, design.reason
     radius = design.layout.aperture_radius
     apart = (design.layout.position[0] - design.layout.position[1]).norm()

@@ -48,7 +48,7 @@ BAD = {
     "one value of a sweep": (["-m", "lenses.count=2,0"], ["lenses.count", "got 0"]),
     "one preset of a sweep": (["-m", "search=quick,quik"], ["search=quik", "did you mean quick?"]),
     "endless interpolation": (
-        ["search.starts=${search.polished}", "search.polished=${search.starts}"],
+        ["search.starts=${search.patience}", "search.patience=${search.starts}"],
         ["search.starts"],
     ),
     "not an override": (["lenses.count"], ["lenses.count", "key=value"]),
