@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from multilens.back import Back as Back
+    from multilens.bounds.bound import Bound as Bound
+    from multilens.bounds.bound import lower_bound as lower_bound
     from multilens.cues import LensDefocus as LensDefocus
     from multilens.cues import PairStereo as PairStereo
     from multilens.design import Design as Design
@@ -27,6 +29,7 @@ if TYPE_CHECKING:
 
 _HOME = {
     "Back": "back",
+    "Bound": "bounds.bound",
     "Design": "design",
     "Layout": "layout",
     "Lens": "lens",
@@ -39,6 +42,7 @@ _HOME = {
     "distance_penalty": "penalty",
     "linear_depths": "problem",
     "log_depths": "problem",
+    "lower_bound": "bounds.bound",
     "polygon": "geometry.shape",
     "rectangle": "geometry.shape",
     "solve": "search.solve",

@@ -12,14 +12,14 @@ from jaxtyping import Float
 from multilens.bounds.contiguous import best_scores, stretch_costs, worth_of_depths
 from multilens.bounds.cut import Depths, FocusGrid, focus_grid
 
-STEPS = 90
+STEPS = 60
 SMOOTHING = (0.05, 0.002)
 """Width of the soft maximum over foci at the first and the last step, in parts of what a focus saves."""
 STRIDE = (0.15, 0.004)
 """Length of the first and the last step, in parts of the worth of the depths around."""
 HIGHEST = 4.0
 """What a depth may become worth on the way, in parts of the worth around it at the start."""
-COARSE = 32.0
+COARSE = 24.0
 """Nodes to half a band while it climbs; the bound itself is taken on a finer grid."""
 
 

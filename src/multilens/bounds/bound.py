@@ -4,7 +4,6 @@ from dataclasses import dataclass
 from math import inf
 
 import numpy as np
-from shapely import Point
 
 from multilens.bounds.branch import Tree, branch
 from multilens.bounds.cut import Depths
@@ -57,13 +56,16 @@ def lower_bound(problem: Question, boxes: int = 4000, target: float = inf) -> Bo
     if kinds is None:
         return Bound(None, "no layout is feasible: a lens has no room even at its smallest aperture")
     present = {type(cue) for cue in problem.cues}
-    tree = Tree(
-        _depths(problem),
-        kinds,
-        Space(problem.gap, body_area(problem.back, problem.gap), box_area(problem.back, problem.gap), _round(problem)),
-        PairStereo in present and len(problem.lenses) > 1,
-        LensDefocus in present,
+    left, top, right, bottom = problem.back.outline.bounds
+    space = Space(
+        problem.gap,
+        body_area(problem.back, problem.gap),
+        box_area(problem.back, problem.gap),
+        (right - left, bottom - top),
+        _round(problem),
     )
+    stereo = PairStereo in present and len(problem.lenses) > 1
+    tree = Tree(_depths(problem), kinds, space, stereo, LensDefocus in present)
     found = branch(tree, boxes, target)
     if found.value == inf:
         return Bound(None, "no layout is feasible: the smallest apertures cannot be packed", boxes=found.boxes)
@@ -79,4 +81,4 @@ def _depths(problem: Problem) -> Depths:
 
 def _round(problem: Problem) -> float | None:
     outline = problem.back.outline
-    return outline.radius if isinstance(outline.core, Point) else None
+    return outline.radius if outline.core.geom_type == "Point" else None

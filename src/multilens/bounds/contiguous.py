@@ -1,8 +1,8 @@
 """Foci of equal apertures: the best of them exactly, by dynamic programming along the depths.
 
-Equal foci share depths out in stretches: after dividing by Z all their errors are |Z - Zf| / a, so the nearest focus is the best one.
-A stretch served by one focus is where it beats stereo too, or it would not be the best; whatever lies between is left to stereo.
-So the best score is that of the cheapest way through the depths, one step at a time by stereo or one stretch at a time by a focus.
+Equal foci share depths out in stretches: after dividing by Z all their errors are |Z - Zf| / a, so the nearest focus is the
+best one, and it beats stereo over a stretch too, where |Z - Zf| / a < Z / g. Whatever lies between is left to stereo. So the best
+score is that of the cheapest way through the depths, one step at a time by stereo or one stretch at a time by a focus.
 """
 
 import numpy as np

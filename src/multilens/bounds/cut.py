@@ -20,7 +20,7 @@ from jaxtyping import Float, Int
 FINE = 48.0
 """Nodes to half the width of the band of depths that a focus serves: the bound loses about 1.5 / (2 FINE)^2 of a saving."""
 
-MOST_PLACES = 60_000
+MOST_PLACES = 50_000
 """Nodes times depths of a grid of foci; beyond it the grid is coarser than is asked, which weakens the bound and nothing else."""
 
 FEWEST_NODES = 48
@@ -85,8 +85,8 @@ def focus_grid(
     """Lay nodes u over a range of foci so that no focus saves more than the node that saves most.
 
     At Zf = m + t, with m halfway between the nodes m - d and m + d, a depth's cost is
-    k (Z - m - t)^2 >= k ((Z - m)^2 - 2 t (Z - m)). What is saved with the latter is convex in t, so it is largest at one of the two
-    nodes, where that cost is k ((Z - u)^2 - d^2).
+    k (Z - m - t)^2 >= k ((Z - m)^2 - 2 t (Z - m)). What is saved with the latter is convex in t, so it is largest at one of the
+    two nodes, where that cost is k ((Z - u)^2 - d^2).
 
     Args:
         depths: where the score is taken.
@@ -146,7 +146,7 @@ def savings(
     worth: Float[np.ndarray, " z"],
     apertures: Float[np.ndarray, " a"],
     focus_range: tuple[float, float],
-    evaluated: int = 49,
+    evaluated: int = 33,
 ) -> Float[np.ndarray, " a"]:
     """Give no less than the most that one focus saves at each of many apertures, mm^2.
 

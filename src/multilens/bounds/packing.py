@@ -13,8 +13,8 @@ from jaxtyping import Bool, Float
 SAFE = 1e-9
 """Relative; by how much room must be missing before it counts."""
 
-LARGEST_RING = 4
-"""Bodies of which a ring is looked at; all orders of more would be too many."""
+MOST_ORDERED = 4
+"""Bodies, the largest, that are looked at in every order; all orders of more would be too many."""
 
 
 def florian_density(ratio: Float[np.ndarray, " m"]) -> Float[np.ndarray, " m"]:
@@ -40,12 +40,14 @@ class Space:
         gap: that bodies keep from each other, mm.
         body_area: that bodies grown by half the gap can cover together, mm^2.
         box_area: of a box around the back, grown likewise, mm^2.
+        sides: of the box around the back, mm.
         round_radius: of a round back, mm; None for others.
     """
 
     gap: float
     body_area: float
     box_area: float
+    sides: tuple[float, float]
     round_radius: float | None
 
     def coverable(self, low: Float[np.ndarray, "m n"], high: Float[np.ndarray, "m n"]) -> Float[np.ndarray, " m"]:
@@ -58,11 +60,44 @@ class Space:
         """Say for which boxes of radii, mm, the areas or the rings of their bodies prove that nothing fits."""
         covered = (pi * (low + self.gap / 2) ** 2).sum(1)
         crowded = covered > self.coverable(low, high) * (1 + SAFE)
-        if self.round_radius is not None:
-            largest_first = -np.sort(-low, axis=1)
-            for count in range(3, min(low.shape[1], LARGEST_RING) + 1):
-                crowded |= ring_turn(largest_first[:, :count], self.round_radius, self.gap) > 2 * pi * (1 + SAFE)
+        largest_first = -np.sort(-low, axis=1)
+        for count in range(2, min(low.shape[1], MOST_ORDERED) + 1):
+            largest = largest_first[:, :count]
+            for across, along in (self.sides, self.sides[::-1]):
+                crowded |= ladder_length(largest, across, self.gap) > along * (1 + SAFE)
+            if self.round_radius is not None and count > 2:
+                crowded |= ring_turn(largest, self.round_radius, self.gap) > 2 * pi * (1 + SAFE)
         return crowded
+
+
+def ladder_length(radii: Float[np.ndarray, "m n"], across: float, gap: float) -> Float[np.ndarray, " m"]:
+    """Give the least length of a strip of a given width that bodies take up, mm; in a shorter one none of their orders fits.
+
+    Two centres are at least d = r_i + r_j + gap apart and at most `across` - r_i - r_j across the strip, so along it they differ
+    by sqrt(d^2 - (across - r_i - r_j)^2) or more. In the order of their centres along the strip each is as far on as all before
+    it force it to be.
+
+    Args:
+        radii: of the bodies, mm.
+        across: width of the strip, mm.
+        gap: that bodies keep from each other, mm.
+    """
+    count = radii.shape[1]
+    apart = {}
+    for i, j in combinations(range(count), 2):
+        together = radii[:, i] + radii[:, j]
+        beside = np.maximum(across - together, 0.0)
+        apart[i, j] = apart[j, i] = np.sqrt(np.maximum((together + gap) ** 2 - beside**2, 0.0))
+    lengths = []
+    for order in permutations(range(count)):
+        if order[0] > order[-1]:
+            continue
+        along: list[Float[np.ndarray, " m"]] = []
+        for place, i in enumerate(order):
+            forced = [along[before] + apart[order[before], i] for before in range(place)]
+            along.append(np.maximum.reduce([radii[:, i], *forced]))
+        lengths.append(np.maximum.reduce([at + radii[:, i] for at, i in zip(along, order, strict=True)]))
+    return np.minimum.reduce(lengths)
 
 
 def least_angle(

@@ -48,7 +48,7 @@ def largest_body(back: Back) -> float:
         most = float(reach.max())
         x, y = x[reach > found], y[reach > found]
     # A disc is no wider than the hull in any direction; on plain shapes this is exact.
-    directions, support = _supports(back)
+    _, support = _supports(back)
     narrowest = float((support + np.roll(support, DIRECTIONS // 2)).min()) / 2
     return min(most, narrowest) + SAFE * back.size
 
@@ -96,7 +96,7 @@ class Reach:
         first, second, cross = first[apart], second[apart], cross[apart]
         p = (np.outer(directions[:, 0], normal[second, 1]) - np.outer(directions[:, 1], normal[second, 0])) / cross
         q = (np.outer(directions[:, 1], normal[first, 0]) - np.outer(directions[:, 0], normal[first, 1])) / cross
-        # Rounding must not lose an edge's own direction, and a factor below 0 by rounding changes nothing that SAFE does not cover.
+        # Rounding must not lose an edge's own direction; a factor below 0 by so little changes nothing that SAFE does not cover.
         between = (p > -1e-12) & (q > -1e-12)
         height = np.where(between, p * offset[first] + q * offset[second], inf)
         shrinking = np.where(between, p + q, 0.0)
@@ -158,7 +158,7 @@ def _supports(back: Back) -> tuple[Float[np.ndarray, "u 2"], Float[np.ndarray, "
 
 
 def _lines(back: Back) -> tuple[Float[np.ndarray, "l 2"], Float[np.ndarray, " l"]]:
-    """Give lines around the back as outward normals and offsets from its middle, mm: its hull's edges, or lines in even directions."""
+    """Give lines around the back, its hull's edges or evenly turned: outward normals and offsets from its middle, mm."""
     rim = back.outline.core.convex_hull.boundary
     ring = np.asarray(rim.coords) if back.outline.core.area > 0 else np.zeros((0, 2))
     if 0 < len(ring) - 1 <= MOST_EDGES:
