@@ -160,11 +160,8 @@ class Problem:
             return self.score_over_depths(layout)
         self._refuse_other_lenses(layout)
         position = layout.position
-        gain, slope, focus = (
-            position.new_full((*position.shape[:-2], 1), inf),
-            position.new_empty(0),
-            position.new_empty(0),
-        )
+        gain = position.new_full((*position.shape[:-2], 1), inf)
+        slope = focus = position.new_empty((*position.shape[:-2], 0))
         for cue in self.cues:
             if isinstance(cue, PairStereo) and len(self.lenses) > 1:
                 gain = cue.gain(layout, self.lenses)
