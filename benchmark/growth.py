@@ -1,6 +1,6 @@
 """How the time of the search's work grows with the size of the problem."""
 
-from math import cos, inf, pi, sin
+from math import cos, pi, sin
 from typing import Any
 
 import torch
@@ -8,15 +8,16 @@ import torch
 import multilens as ml
 from benchmark.problems import main_lens
 from benchmark.speed import BATCH, DEPTHS, LENSES, question, random_layouts, seconds_each, value_and_gradient
-from multilens.penalty import distance_penalty
-from multilens.search.descent import DescentSettings, descend
+from multilens.search.barrier import BarrierSettings, settle
+from multilens.search.sight import Seer
+from multilens.search.solve import BATCH as TOGETHER
 from multilens.search.starts import scattered_starts
 from multilens.search.variables import Variables
 
 COUNTS, DEPTH_COUNTS, STARTS, VERTICES = (2, 4, 8, 16), (32, 128, 512), (64, 256, 1024), (20, 2000)
 
 STEPS = 20
-"""Of a descent that is timed, to the mean of a step."""
+"""Of a search that is timed, to the mean of a step."""
 
 
 def growth_table() -> list[list[Any]]:
@@ -32,28 +33,23 @@ def growth_table() -> list[list[Any]]:
             layout = random_layouts(problem, batch, {"dtype": torch.float32})
             seconds = seconds_each(lambda at=layout, asked=problem: value_and_gradient(asked.score, at))
             rows.append([what, size, 1e6 * seconds / batch, "value and gradient, float32"])
-    steps = {vertices: descent_step(vertices) for vertices in VERTICES}
+    steps = {vertices: search_step(vertices) for vertices in VERTICES}
     # In turn, the least of several: what else the machine does only adds.
     for vertices in VERTICES * 2:
-        steps[vertices] = min(steps[vertices], descent_step(vertices))
+        steps[vertices] = min(steps[vertices], search_step(vertices))
     return rows + [
-        ["outline vertices", vertices, 1e6 * seconds / BATCH, "step of the descent, with penalty, float32"]
+        ["outline vertices", vertices, 1e6 * seconds / TOGETHER, "step of the search, with all limits, float64"]
         for vertices, seconds in steps.items()
     ]
 
 
-def descent_step(vertices: int) -> float:
-    """Give the mean time of a step of the descent on an outline of so many vertices, for a batch of starts, s."""
+def search_step(vertices: int) -> float:
+    """Give the mean time of a step of the search on an outline of so many vertices, for a batch of starts, s."""
     problem = ml.Problem(star(vertices), [main_lens()] * LENSES, ml.log_depths(200, 5000, DEPTHS))
-    variables = Variables(problem, torch.float32)
-    x = scattered_starts(problem, variables, BATCH, 0).float()
-    price = distance_penalty(problem)
-    settings = DescentSettings(steps=STEPS)
-
-    def go_on(step: int, alive: int, best: float) -> bool:
-        return best < inf or step < STEPS
-
-    return seconds_each(lambda: descend(problem, variables, price, x, settings, go_on)) / STEPS
+    variables = Variables(problem)
+    share = variables.spread(scattered_starts(problem, variables, TOGETHER, 0))
+    seer, settings = Seer(problem, variables), BarrierSettings(steps=STEPS)
+    return seconds_each(lambda: settle(seer, share, settings)) / STEPS
 
 
 def star(vertices: int) -> ml.Back:

@@ -24,7 +24,7 @@ class Run:
         seed: of the run.
         seconds: that it took in all.
         found: what counts, better and better.
-        failure: why it found nothing, or nothing.
+        failure: why it ended early or never began; empty where it did not.
     """
 
     case: str

@@ -11,7 +11,7 @@ PEERS = {
     "SLSQP": "slsqp.slsqp",
     "differential evolution": "evolution.evolution",
     "CMA-ES": "cma_es.cma_es",
-    "ISRES": "stochastic_ranking.stochastic_ranking",
+    "genetic algorithm": "genetic.genetic",
     "random search": "random_search.random_search",
 }
 """Module and function of each."""
@@ -36,7 +36,7 @@ def multilens(task: Task) -> list[Found]:
     notebook = Notebook(task, monotonic)
 
     def listen(progress: Progress) -> None:
-        layout = getattr(progress, "layout", None)
+        layout = progress.layout
         if layout is not None:
             notebook.tell(progress.best, lambda: layout)
 

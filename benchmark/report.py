@@ -30,7 +30,7 @@ class Bound:
 
     Args:
         value: mm^2, or None where none is known.
-        reason: why there is none, or how it was proved.
+        reason: why there is none.
         seconds: it took.
     """
 
@@ -237,6 +237,7 @@ def _comparison(results: Results) -> list[list[Any]]:
             "time ratio",
             *(f"{method} above best known (%)" for method in (OURS, *methods)),
             "bound below (%)",
+            "time of the bound (s)",
         ]
     ]
     for case in results.cases:
@@ -253,6 +254,7 @@ def _comparison(results: Results) -> list[list[Any]]:
                 _shown_ratio(_ratio(results, case.name), theirs == inf),
                 *(_shown_share(_gap(results, case.name, method)) for method in (OURS, *methods)),
                 f"{100 * gap:.1f}" if gap is not None else (f"none: {bound.reason}" if bound else "not asked"),
+                f"{bound.seconds:.1f}" if bound else "",
             ]
         )
     return rows

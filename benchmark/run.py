@@ -14,9 +14,9 @@ import multilens as ml
 from benchmark.best_known import improved, load, save
 from benchmark.curves import curves
 from benchmark.growth import growth_table
-from benchmark.lanes import CORES, Lanes, warm_lanes
+from benchmark.lanes import CORES, Lanes, Outcome, warm_lanes
 from benchmark.measures import Run
-from benchmark.methods import OURS, PEERS, RIVAL, method
+from benchmark.methods import OURS, PEERS, RIVAL
 from benchmark.problems import CASES, Case
 from benchmark.report import Bound, Results, summary, table
 from benchmark.speed import speed_table
@@ -50,7 +50,7 @@ def main() -> None:
                 known, case, [(run.method, each) for run in runs if run.case == case.name for each in run.found]
             )
         save(known)
-        bounds = {case.name: lanes.anywhere(0, _bound, case.name).result() for case in chosen}
+        bounds = {case.name: lanes.anywhere(0, _bound, case.name, known[case.name].score).result() for case in chosen}
         speed, growth = (lanes.anywhere(0, made).result() for made in (speed_table, growth_table))
     results = Results(chosen, runs, known, limit, bounds, speed, growth)
     folder = RESULTS if whole else QUICK_RESULTS
@@ -71,36 +71,26 @@ def write(results: Results, folder: Path) -> None:
 
 
 def _runs(lanes: Lanes, case: Case, seeds: Sequence[int], limit: float) -> list[Run]:
-    runs = []
+    runs: list[Run] = []
+
+    def note(name: str, seed: int, outcome: Outcome) -> None:
+        runs.append(Run(case.name, name, seed, outcome.seconds, tuple(outcome.judged), outcome.failure))
+        _tell(runs[-1])
+
     for seed in seeds:
         for name in (OURS, RIVAL):
-            found, seconds = lanes.alone(name, case.name, seed, limit)
-            runs.append(Run(case.name, name, seed, seconds, tuple(found)))
-            _tell(runs[-1])
+            note(name, seed, lanes.alone(name, case.name, seed, limit))
     others = [name for name in PEERS if name != RIVAL]
     for names in (others[at : at + CORES] for at in range(0, len(others), CORES)):
-        done = lanes.side_by_side(names, case.name, seeds[0], limit)
-        for name, (found, seconds) in zip(names, done, strict=True):
-            runs.append(Run(case.name, name, seeds[0], seconds, tuple(found), _failure(name)))
-            _tell(runs[-1])
+        for name, outcome in zip(names, lanes.side_by_side(names, case.name, seeds[0], limit), strict=True):
+            note(name, seeds[0], outcome)
     return runs
 
 
-def _failure(name: str) -> str:
-    try:
-        method(name)
-    except ImportError as error:
-        return f"not run: {error}"
-    return ""
-
-
-def _bound(case: str) -> Bound:
+def _bound(case: str, best: float) -> Bound:
     problem = next(one for one in CASES if one.name == case).problem
-    lower_bound = getattr(ml, "lower_bound", None)
-    if lower_bound is None:
-        return Bound(None, "none yet", 0.0)
     began = monotonic()
-    bound = lower_bound(problem)
+    bound = ml.lower_bound(problem, target=best)
     return Bound(bound.value, bound.reason, monotonic() - began)
 
 

@@ -2,6 +2,7 @@ from pathlib import Path
 
 import pytest
 
+import multilens as ml
 from benchmark.best_known import Entry, improved, load, save
 from benchmark.problems import CASES, Case, fingerprint
 from benchmark.referee import Judged
@@ -29,6 +30,13 @@ def test_the_score_of_an_entry_is_what_its_layout_scores(name: str) -> None:
     score = problem.score(read_layout(STORED[name].layout, "layout", problem.lenses)).item()
     # Another machine, or the same formula in another order, rounds the last digits otherwise.
     assert score == pytest.approx(STORED[name].score, rel=1e-9)
+
+
+@pytest.mark.parametrize("name", STORED)
+def test_no_entry_is_below_what_is_proved(name: str) -> None:
+    bound = ml.lower_bound(BY_NAME[name].problem, boxes=1).value
+    assert bound is not None
+    assert bound <= STORED[name].score
 
 
 @pytest.fixture

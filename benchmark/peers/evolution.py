@@ -6,8 +6,8 @@ from scipy.optimize import differential_evolution
 from benchmark.found import Found, OutOfTimeError, Task
 from benchmark.peers.priced import Priced
 
-POPULATION = 4
-"""Vectors for each unknown; with SciPy's 15 the population hardly moved in the time there is."""
+POPULATION = 2
+"""Vectors for each unknown: few, so that there are many generations; SciPy's 15 hardly moved in the time there is."""
 
 
 def evolution(task: Task) -> list[Found]:

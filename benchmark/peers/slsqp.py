@@ -1,5 +1,6 @@
 """SciPy's SLSQP from random starts, with the gradients of objective and constraints written out: the peer to beat."""
 
+from contextlib import suppress
 from time import monotonic
 
 import numpy as np
@@ -153,12 +154,10 @@ def slsqp(task: Task) -> list[Found]:
         notebook.tell(score, lambda: model.layout(settled[0]))
         return True
 
-    try:
+    with suppress(OutOfTimeError):
         while not notebook.out_of_time:
             for start in model.random_starts(random, STARTS_AT_ONCE):
                 end = solver.run(start, ROUGH, notebook)
                 if tell(end):
                     tell(solver.run(end, FINE, notebook))
-    except OutOfTimeError:
-        pass
     return notebook.all()

@@ -9,6 +9,8 @@ from benchmark.peers.priced import Priced
 from benchmark.problems import CASES
 from benchmark.referee import judge
 
+NEEDED = {"CMA-ES": "cma", "genetic algorithm": "pymoo"}
+
 PROBLEM = next(case for case in CASES if case.name == "2 disc").problem
 
 
@@ -34,8 +36,8 @@ def test_after_the_end_nothing_is_priced() -> None:
 
 @pytest.mark.parametrize("name", PEERS)
 def test_a_method_finds_something_that_the_referee_lets_count(name: str) -> None:
-    if name in ("CMA-ES", "ISRES"):
-        pytest.importorskip({"CMA-ES": "cma", "ISRES": "pymoo"}[name], reason="needs the extra bench")
+    if name in NEEDED:
+        pytest.importorskip(NEEDED[name], reason="needs the extra bench")
     found = method(name)(Task(PROBLEM, 0, monotonic(), 0.4))
     judged = judge(PROBLEM, found)
     assert judged

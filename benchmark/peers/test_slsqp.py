@@ -9,7 +9,6 @@ from benchmark.peers.slsqp import Slsqp
 from benchmark.problems import CASES, Case
 from multilens.search.legalise import legalise
 
-
 STEP = 1e-8
 
 
