@@ -83,10 +83,14 @@ class PairStereo:
 
     def gain(self, layout: Layout, lenses: Sequence[Lens]) -> Float[Tensor, "*batch p"]:
         """Give the angular noise of every pair over its baseline, 1/mm; lenses closer than a nanometre count as that far apart."""
-        angular_noise = _column([lens.disparity_noise / lens.focal_length for lens in lenses], layout)
-        first, second = pair_indices(len(lenses), layout.position.device)
-        noise = pair_angular_noise(angular_noise[first], angular_noise[second])
+        noise = self.noise(lenses, layout.position.dtype).to(layout.position.device)
         return noise / pair_distance(layout.position).clamp(min=NANOMETRE)
+
+    def noise(self, lenses: Sequence[Lens], dtype: torch.dtype) -> Float[Tensor, " p"]:
+        """Give the angular noise of every pair, rad."""
+        each = torch.tensor([lens.disparity_noise / lens.focal_length for lens in lenses], dtype=dtype)
+        first, second = pair_indices(len(lenses))
+        return pair_angular_noise(each[first], each[second])
 
     def shape(self, depths: Float[Tensor, " z"]) -> Float[Tensor, " z"]:
         """Give Z^2, mm^2."""

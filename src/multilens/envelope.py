@@ -1,4 +1,4 @@
-"""The best cue at every depth in closed form: divided by the depth, stereo is a line and defocus is a V.
+"""The score of the thesis' cues in closed form, with its gradient: divided by the depth, stereo is a line and defocus is a V.
 
 At a depth Z stereo of the best pair has the error g Z^2 and defocus of lens i the error h_i Z abs(Z - Zf_i). Divided by Z these
 are g Z and h_i abs(Z - Zf_i): a line and some Vs, and the corners of their lower envelope are known. Between two corners one cue
@@ -13,6 +13,8 @@ from jaxtyping import Float
 from torch import Tensor
 from torch.autograd import Function
 from torch.autograd.function import once_differentiable
+
+TINY = 1e-300
 
 
 class DepthMoments:
@@ -60,43 +62,56 @@ def mean_least_square(
     Returns:
         The mean of the squared error, mm^2. Computed in float64 whatever the inputs are; sums of fourth powers need it.
     """
-    if not slope.shape[-1]:
-        return gain.square() * moments.sums[-1, 2].to(gain)
     return _MeanLeastSquare.apply(gain, slope, focus, moments)  # type: ignore[return-value]
+
+
+def with_gradient(
+    gain: Float[Tensor, "*batch"],
+    slope: Float[Tensor, "*batch k"],
+    focus: Float[Tensor, "*batch k"],
+    moments: DepthMoments,
+) -> tuple[Tensor, Tensor, Tensor, Tensor]:
+    """Give `mean_least_square` and its derivatives with respect to gain, slope and focus, without autograd; all float64."""
+    if not slope.shape[-1]:
+        fourth = moments.sums[-1, 2]
+        return gain.square() * fourth, 2 * gain * fourth, slope, focus
+    k = slope.shape[-1]
+    low, high = _winning_intervals(gain.unsqueeze(-1), slope, focus)
+    ends = torch.searchsorted(moments.depths, torch.cat([low, torch.maximum(low, high)], dim=-1))
+    first, last = ends[..., :k].unsqueeze(-2), ends[..., k:].unsqueeze(-2)
+    # The ends of the intervals, counted in depths, cut the range into 2 k + 1 pieces, each with one winner.
+    cuts = torch.nn.functional.pad(ends.sort(dim=-1).values, (1, 0))
+    piece = cuts.unsqueeze(-1)
+    held = slope.unsqueeze(-2) * ((first <= piece) & (piece < last))
+    steepest, winner = held.max(-1)
+    winner = winner.masked_fill_(steepest == 0, k)
+    before = moments.sums[cuts]
+    after = torch.cat([before[..., 1:, :], moments.sums[-1].expand_as(before[..., :1, :])], dim=-2)
+    won = before.new_zeros(*slope.shape[:-1], k + 1, 3)
+    won.scatter_add_(-2, winner.unsqueeze(-1).expand_as(before), after - before)
+    second, third, fourth = won.unbind(-1)
+    by_stereo = fourth[..., -1]
+    second, third, fourth = second[..., :-1], third[..., :-1], fourth[..., :-1]
+    drift = focus * second - third
+    miss = (fourth + focus * (drift - third)).clamp_(min=0)
+    # Without stereo its gain is infinite and it wins nowhere.
+    gain = gain.masked_fill(by_stereo == 0, 0)
+    by_gain, by_slope = gain * by_stereo, slope * miss
+    value = (slope * by_slope).sum(-1) + gain * by_gain
+    return value, 2 * by_gain, 2 * by_slope, 2 * slope.square() * drift
 
 
 class _MeanLeastSquare(Function):
     @staticmethod
     def forward(ctx: Any, gain: Tensor, slope: Tensor, focus: Tensor, moments: DepthMoments) -> Tensor:
-        kind = slope.dtype
-        g, h, f = gain.double().unsqueeze(-1), slope.double(), focus.double()
-        low, high = _winning_intervals(g, h, f)
-        first = torch.searchsorted(moments.depths, low.contiguous())
-        last = torch.searchsorted(moments.depths, high.contiguous()).maximum(first)
-        # The ends of the intervals, counted in depths, cut the range into 2 k + 1 pieces, each with one winner.
-        ends = torch.cat([first, last], dim=-1).sort(dim=-1).values
-        begin = torch.nn.functional.pad(ends, (1, 0))
-        end = torch.nn.functional.pad(ends, (0, 1), value=len(moments.depths))
-        piece, lens = begin.unsqueeze(-1), (first.unsqueeze(-2), last.unsqueeze(-2))
-        held = torch.where((lens[0] <= piece) & (piece < lens[1]), h.unsqueeze(-2), 0.0)
-        steepest, winner = held.max(-1)
-        winner = winner.where(steepest > 0, h.shape[-1])
-        sums = moments.sums[end] - moments.sums[begin]
-        won = sums.new_zeros(*h.shape[:-1], h.shape[-1] + 1, 3)
-        won.scatter_add_(-2, winner.unsqueeze(-1).expand_as(sums), sums)
-        second, third, fourth = won[..., :-1, :].unbind(-1)
-        miss = (fourth - 2 * f * third + f * f * second).clamp(min=0)
-        by_stereo = won[..., -1, 2]
-        # Without stereo its gain is infinite and it wins nowhere.
-        g = g.squeeze(-1).where(by_stereo > 0, 0.0)
-        ctx.save_for_backward(2 * g * by_stereo, 2 * h * miss, 2 * h * h * (f * second - third))
-        ctx.kind = kind
-        return ((h * h * miss).sum(-1) + g * g * by_stereo).to(kind)
+        value, *slopes = with_gradient(gain.double(), slope.double(), focus.double(), moments)
+        ctx.save_for_backward(*(each.to(slope.dtype) for each in slopes))
+        return value.to(slope.dtype)
 
     @staticmethod
     @once_differentiable
     def backward(ctx: Any, grad: Tensor) -> tuple[Tensor, Tensor, Tensor, None]:  # type: ignore[override]
-        by_gain, by_slope, by_focus = (part.to(ctx.kind) for part in ctx.saved_tensors)
+        by_gain, by_slope, by_focus = ctx.saved_tensors
         each = grad.unsqueeze(-1)
         return grad * by_gain, each * by_slope, each * by_focus, None
 
@@ -105,15 +120,17 @@ def _winning_intervals(
     g: Float[Tensor, "*batch 1"], h: Float[Tensor, "*batch k"], f: Float[Tensor, "*batch k"]
 ) -> tuple[Float[Tensor, "*batch k"], Float[Tensor, "*batch k"]]:
     """Give the interval in which each V lies below all flatter ones and below the line."""
+    k = h.shape[-1]
     hf = h * f
-    steeper = h.unsqueeze(-1) - h.unsqueeze(-2)
+    line_low, line_high = hf / (h + g), (hf / (h - g).clamp(min=TINY)).masked_fill(h <= g, torch.inf)
+    if k == 1:
+        return line_low, line_high
+    mine, other, mine_f, other_f = h.unsqueeze(-1), h.unsqueeze(-2), hf.unsqueeze(-1), hf.unsqueeze(-2)
+    steeper = mine - other
     # Of equally steep ones the first counts as steeper; their second crossing is at infinity.
-    tie_break = torch.full_like(steeper[..., :, :], 1e-300).tril(-1)
-    flatter = steeper >= tie_break
-    flatter.diagonal(dim1=-2, dim2=-1).fill_(False)
-    between = (hf.unsqueeze(-1) + hf.unsqueeze(-2)) / (h.unsqueeze(-1) + h.unsqueeze(-2))
-    beyond = (hf.unsqueeze(-1) - hf.unsqueeze(-2)) / steeper.clamp(min=1e-300)
-    low = torch.where(flatter, torch.minimum(between, beyond), -torch.inf).amax(-1)
-    high = torch.where(flatter, torch.maximum(between, beyond), torch.inf).amin(-1)
-    line_low, line_high = hf / (h + g), torch.where(h > g, hf / (h - g).clamp(min=1e-300), torch.inf)
+    tie_break = torch.full((k, k), TINY, dtype=h.dtype, device=h.device).tril()
+    no_flatter = steeper < tie_break
+    between, beyond = (mine_f + other_f) / (mine + other), (mine_f - other_f) / steeper.clamp(min=TINY)
+    low = torch.minimum(between, beyond).masked_fill_(no_flatter, -torch.inf).amax(-1)
+    high = torch.maximum(between, beyond).masked_fill_(no_flatter, torch.inf).amin(-1)
     return torch.maximum(low, line_low), torch.minimum(high, line_high)

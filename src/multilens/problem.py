@@ -3,7 +3,7 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from math import inf, isfinite
+from math import isfinite
 from typing import Protocol, runtime_checkable
 
 import torch
@@ -11,8 +11,9 @@ from jaxtyping import Float, Int
 from torch import Tensor
 
 from multilens.back import Back
+from multilens.closed_form import ClosedForm, differentiable
 from multilens.cues import Cue, FactoredCue, LensDefocus, Measurement, PairStereo
-from multilens.envelope import DepthMoments, mean_least_square
+from multilens.envelope import DepthMoments
 from multilens.layout import Layout
 from multilens.lens import Lens
 from multilens.numerics import least
@@ -159,15 +160,7 @@ class Problem:
         if not self.is_envelope:
             return self.score_over_depths(layout)
         self._refuse_other_lenses(layout)
-        position = layout.position
-        gain = position.new_full((*position.shape[:-2], 1), inf)
-        slope = focus = position.new_empty((*position.shape[:-2], 0))
-        for cue in self.cues:
-            if isinstance(cue, PairStereo) and len(self.lenses) > 1:
-                gain = cue.gain(layout, self.lenses)
-            elif isinstance(cue, LensDefocus):
-                slope, focus = cue.slope_and_focus(layout, self.lenses)
-        return mean_least_square(gain.amin(-1), slope, focus, self._moments.to(position.device))
+        return differentiable(self.closed_form(layout.position.device), layout)
 
     def score_over_depths(self, layout: Layout) -> Float[Tensor, "*batch"]:
         """Give the score by the error of every cue at every depth, as any cue allows; pairs of a factored cue count as one."""
@@ -179,9 +172,16 @@ class Problem:
         kinds = [type(cue) for cue in self.cues]
         return set(kinds) <= {PairStereo, LensDefocus} and len(kinds) == len(set(kinds))
 
+    def closed_form(self, device: torch.device) -> ClosedForm:
+        """Give the score with its gradient as one function; only for the thesis' cues, `is_envelope`."""
+        if device not in self._closed_forms:
+            moments = DepthMoments(self.depths, self.weights).to(device)
+            self._closed_forms[device] = ClosedForm(self.lenses, self.cues, moments)
+        return self._closed_forms[device]
+
     @cached_property
-    def _moments(self) -> DepthMoments:
-        return DepthMoments(self.depths, self.weights)
+    def _closed_forms(self) -> dict[torch.device, ClosedForm]:
+        return {}
 
     def terms(self, layout: Layout) -> Float[Tensor, "*batch 1"]:
         """Give the score alone."""

@@ -59,13 +59,11 @@ class Settled:
 
 @dataclass(frozen=True)
 class _State:
-    """Slacks and forces: of the limits, and of the lower and upper end of each unknown."""
+    """What is seen, and slack and force at every limit: pairs, edges, and the lower and upper end of each unknown."""
 
     sight: Sight
     slack: Tensor
     force: Tensor
-    below: Tensor
-    above: Tensor
     hessian: Tensor
     reach: Tensor
 
@@ -97,17 +95,9 @@ def settle(
     seer.calibrate(share)
     first, last = settings.pressure
     sight = seer.look(share, first)
-    slack = sight.room.clamp(min=LEAST_SLACK)
-    identity = torch.eye(seer.size, dtype=share.dtype, device=share.device)
-    state = _State(
-        sight,
-        slack,
-        first / slack,
-        first / _to_lower(seer, share),
-        first / _to_upper(seer, share),
-        identity.expand(len(share), -1, -1),
-        share.new_full((len(share),), settings.reach),
-    )
+    slack = _room(seer, sight).clamp(min=LEAST_SLACK)
+    identity = torch.eye(seer.size, dtype=share.dtype, device=share.device).expand(len(share), -1, -1)
+    state = _State(sight, slack, first / slack, identity, share.new_full((len(share),), settings.reach))
     history = [sight.value]
     for step in range(settings.steps):
         if not go_on():
@@ -120,80 +110,55 @@ def settle(
 
 
 def _stepped(seer: Seer, now: _State, pressure: float, reach: float) -> _State:
-    sight, slack = now.sight, now.slack
-    lower, upper = _to_lower(seer, sight.share), _to_upper(seer, sight.share)
-    stiffness, missing = now.force / slack, sight.room - slack
-    matrix = now.hessian + seer.curvature(sight, stiffness)
-    matrix = matrix + torch.diag_embed(now.below / lower + now.above / upper)
-    towards = seer.gather(sight, pressure / slack - stiffness * missing) - sight.slope
-    towards = torch.where(seer.free, towards + pressure / lower - pressure / upper, 0)
-    step = _solve(seer, matrix, towards)
-    slack_step = seer.along(sight, step) + missing
-    force_step = pressure / slack - now.force - stiffness * slack_step
-    below_step = pressure / lower - now.below - now.below / lower * step
-    above_step = pressure / upper - now.above + now.above / upper * step
+    sight, slack, force = now.sight, now.slack, now.force
+    room, limits = _room(seer, sight), sight.room.shape[1]
+    stiffness, missing = force / slack, room - slack
+    lower, upper = stiffness[:, limits:].chunk(2, dim=1)
+    matrix = now.hessian + seer.curvature(sight, stiffness[:, :limits]) + torch.diag_embed(lower + upper)
+    step = _solve(seer, matrix, _gathered(seer, sight, pressure / slack - stiffness * missing) - sight.slope)
+    slack_step = torch.cat([seer.along(sight, step), step, -step], dim=1) + missing
+    force_step = pressure / slack - force - stiffness * slack_step
 
     keep = max(0.9, 1 - pressure)
-    longest = step.abs().amax(-1)
-    length = (
-        torch.stack(
-            [
-                _longest(slack, slack_step, keep),
-                _longest(lower, step, keep),
-                _longest(upper, -step, keep),
-                now.reach / longest.clamp(min=torch.finfo(step.dtype).tiny),
-            ]
-        )
-        .amin(0)
-        .clamp(max=1)
-    )
-    dual_length = (
-        torch.stack(
-            [
-                _longest(now.force, force_step, keep),
-                _longest(now.below, below_step, keep),
-                _longest(now.above, above_step, keep),
-            ]
-        )
-        .amin(0)
-        .clamp(max=1)
-        .unsqueeze(-1)
-    )
+    longest = step.abs().amax(-1).clamp(min=torch.finfo(step.dtype).tiny)
+    length = torch.minimum(_longest(slack, slack_step, keep), now.reach / longest).clamp_(max=1)
     moved = length.unsqueeze(-1) * step
     seen = seer.look(sight.share + moved, pressure)
-    new_slack = slack + length.unsqueeze(-1) * slack_step
+    new_room, new_slack = _room(seer, seen), slack + length.unsqueeze(-1) * slack_step
     # What room there is may as well be used: a slack that lags behind only slows the way.
-    new_slack = torch.where(seen.room > 0.1 * new_slack, seen.room, new_slack)
-    new_force = now.force + dual_length * force_step
+    new_slack = torch.where(new_room > 0.1 * new_slack, new_room, new_slack)
+    new_force = force + _longest(force, force_step, keep).clamp_(max=1).unsqueeze(-1) * force_step
 
-    worth = 1 + 2 * now.force.amax(-1)
-    before = _merit(seer, sight, slack, pressure, worth)
-    after = _merit(seer, seen, new_slack, pressure, worth)
+    worth = 1 + 2 * force.amax(-1)
+    before = sight.value - pressure * slack.log().sum(-1) + worth * missing.abs().sum(-1)
+    after = seen.value - pressure * new_slack.log().sum(-1) + worth * (new_room - new_slack).abs().sum(-1)
     taken = (after <= before + ALLOWED) & seen.slope.isfinite().all(-1)
     # Also a step that is not taken tells of the curvature.
-    bent = (seen.slope - seer.gather(seen, new_force)) - (sight.slope - seer.gather(sight, new_force))
-    hessian = _updated(now.hessian, moved, bent)
+    pulls = new_force[:, :limits]
+    bent = (seen.slope - seer.gather(seen, pulls)) - (sight.slope - seer.gather(sight, pulls))
     each = taken.unsqueeze(-1)
-    sight = seen.where(taken, sight)
     slack = torch.where(each, new_slack, slack)
-    lower, upper = _to_lower(seer, sight.share), _to_upper(seer, sight.share)
+    ideal = pressure / slack
     return _State(
-        sight,
+        seen.where(taken, sight),
         slack,
-        _near(torch.where(each, new_force, now.force), pressure / slack),
-        _near(torch.where(each, now.below + dual_length * below_step, now.below), pressure / lower),
-        _near(torch.where(each, now.above + dual_length * above_step, now.above), pressure / upper),
-        hessian,
+        # A force stays within a hundredth and a hundred times what the pressure asks of it.
+        torch.where(each, new_force, force).maximum(ideal / 100).minimum(ideal * 100),
+        _updated(now.hessian, moved, bent),
         torch.where(taken, (1.5 * now.reach).clamp(max=reach), length * longest / 4),
     )
 
 
-def _to_lower(seer: Seer, share: Tensor) -> Tensor:
-    return torch.where(seer.free, share, 1)
+def _room(seer: Seer, sight: Sight) -> Float[Tensor, "b l"]:
+    """Give the room at every limit and at both ends of each unknown; of what is not free there is always 1."""
+    lower, upper = sight.share.where(seer.free, 1), (seer.upper - sight.share).where(seer.free, 1)
+    return torch.cat([sight.room, lower, upper], dim=1)
 
 
-def _to_upper(seer: Seer, share: Tensor) -> Tensor:
-    return torch.where(seer.free, seer.upper - share, 1)
+def _gathered(seer: Seer, sight: Sight, force: Float[Tensor, "b l"]) -> Float[Tensor, "b v"]:
+    limits = sight.room.shape[1]
+    lower, upper = force[:, limits:].chunk(2, dim=1)
+    return seer.gather(sight, force[:, :limits]) + lower - upper
 
 
 def _solve(seer: Seer, matrix: Tensor, towards: Tensor) -> Tensor:
@@ -214,12 +179,6 @@ def _longest(positive: Tensor, step: Tensor, keep: float) -> Tensor:
     return torch.where(step < 0, -keep * positive / step, torch.inf).amin(-1)
 
 
-def _merit(seer: Seer, sight: Sight, slack: Tensor, pressure: float, worth: Tensor) -> Tensor:
-    ends = (_to_lower(seer, sight.share) * _to_upper(seer, sight.share)).log().sum(-1)
-    apart = (sight.room - slack).abs().sum(-1)
-    return sight.value - pressure * (slack.log().sum(-1) + ends) + worth * apart
-
-
 def _updated(hessian: Tensor, moved: Tensor, bent: Tensor) -> Tensor:
     """Give Powell's damped BFGS update; layouts that did not move keep what they have."""
     along = (hessian @ moved.unsqueeze(-1)).squeeze(-1)
@@ -231,8 +190,3 @@ def _updated(hessian: Tensor, moved: Tensor, bent: Tensor) -> Tensor:
     less = along.unsqueeze(-1) * along.unsqueeze(-2) / now.view(-1, 1, 1)
     more = bent.unsqueeze(-1) * bent.unsqueeze(-2) / new.view(-1, 1, 1)
     return torch.where(good.view(-1, 1, 1), hessian - less + more, hessian)
-
-
-def _near(force: Tensor, ideal: Tensor) -> Tensor:
-    """Keep a force within a hundredth and a hundred times what the pressure asks of it."""
-    return force.maximum(ideal / 100).minimum(ideal * 100)

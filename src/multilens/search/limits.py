@@ -3,11 +3,10 @@
 from dataclasses import dataclass
 
 import torch
-from jaxtyping import Float
+from jaxtyping import Bool, Float
 from torch import Tensor
 
-from multilens.constraints import body_radius, pair_room
-from multilens.geometry.distance import is_crossed, offset_from_segments, outward_normals
+from multilens.geometry.distance import is_crossed, outward_normals
 from multilens.geometry.pairs import pair_indices
 from multilens.geometry.simplify import few_edges
 from multilens.layout import Layout
@@ -15,6 +14,8 @@ from multilens.problem import Question
 
 COARSE = 2e-4
 """Part of the back's diagonal by which outlines of many edges are made smaller to have few."""
+
+TINY = 1e-300
 
 
 @dataclass(frozen=True)
@@ -63,39 +64,70 @@ class Limits:
             tolerance = COARSE * back.size
             sides = [(few_edges(shape, within, tolerance), within, reach) for shape, within, reach in sides]
         edges = [torch.from_numpy(shape.segments) for shape, _, _ in sides]
+        counts = torch.tensor([len(e) for e in edges], dtype=torch.long)
+        kind = {"dtype": torch.float64, "device": device}
         self.edges = torch.cat(edges).to(device)
-        self.edges_of_shape = [len(e) for e in edges]
-        owner = torch.arange(len(sides)).repeat_interleave(torch.tensor(self.edges_of_shape, dtype=torch.long))
-        self.owner = owner.to(device)
-        self.within = torch.tensor([within for _, within, _ in sides], dtype=torch.bool, device=device)
+        self.owner = torch.arange(len(sides)).repeat_interleave(counts).to(device)
+        within = torch.tensor([within for _, within, _ in sides], dtype=torch.bool, device=device)
         reach = [reach + (shape.radius if within else -shape.radius) for shape, within, reach in sides]
-        self.reach = torch.tensor(reach, dtype=torch.float64, device=device)[self.owner]
+        self.reach = torch.tensor(reach, **kind)[self.owner]
+        self.start, self.along = self.edges[:, 0], self.edges[:, 1] - self.edges[:, 0]
+        length_squared = self.along.square().sum(-1, keepdim=True)
+        self.along_share = self.along / length_squared.where(length_squared > 0, 1)
+        # A point or a line has no inside: lenses that stay within its reach are on the way out wherever they are.
+        flat = torch.tensor([shape.core.area == 0 for shape, _, _ in sides], dtype=torch.bool, device=device)
+        self.sign = torch.where(flat & within, -1.0, 1.0).to(**kind)[self.owner]
+        self.rings = (~flat[self.owner]).nonzero().flatten()
+        self.ring_owner = torch.nn.functional.one_hot(self.owner[self.rings], len(sides)).to(**kind)
+        self.ring_within = within & ~flat
         # The way to go from right on an edge, where a lens off the back is held by its bounds: inward, or away from a keep-out.
-        side = torch.where(self.within[self.owner], -1.0, 1.0).to(self.edges)
+        side = torch.where(within[self.owner], -1.0, 1.0).to(self.edges)
         self.inward = side.unsqueeze(-1) * outward_normals(self.edges)
+        self.first, self.second = pair_indices(len(question.lenses), device)
+        self.clearance = torch.tensor([lens.clearance for lens in question.lenses], **kind)
+        self.least_apart = self.clearance[self.first] + self.clearance[self.second] + question.gap
 
     def __call__(self, layout: Layout) -> Room:
-        """Give the room left at every limit."""
-        position = layout.position
-        first, second = pair_indices(layout.count, position.device)
-        away = position[..., first, :] - position[..., second, :]
-        tiny = torch.finfo(away.dtype).tiny
-        parting = away / away.norm(dim=-1, keepdim=True).clamp(min=tiny)
+        """Give the room left at every limit, in float64."""
+        position, radius = layout.position.double(), layout.aperture_radius.double()
+        away = position[..., self.first, :] - position[..., self.second, :]
+        distance = away.norm(dim=-1)
+        apart = distance - (radius[..., self.first] + radius[..., self.second] + self.least_apart)
+        parting = away / distance.clamp(min=TINY).unsqueeze(-1)
         room, inward = self._at_edges(position)
-        room = room - body_radius(layout, self.question.lenses).unsqueeze(-1)
-        return Room(pair_room(layout, self.question.lenses, self.question.gap), parting, room, inward)
+        return Room(apart, parting, room - (radius + self.clearance).unsqueeze(-1), inward)
 
     def _at_edges(self, position: Float[Tensor, "*batch n 2"]) -> tuple[Tensor, Tensor]:
-        edges, reach = self.edges.to(position.dtype), self.reach.to(position.dtype)
-        offset = offset_from_segments(position, edges)
+        from_start = position.unsqueeze(-2) - self.start
+        share = (from_start * self.along_share).sum(-1).clamp_(0, 1)
+        offset = from_start - share.unsqueeze(-1) * self.along
         distance = offset.norm(dim=-1)
-        crossed = is_crossed(position, edges).split(self.edges_of_shape, dim=-1)
-        inside = torch.stack([each.sum(-1).remainder(2).bool() for each in crossed], dim=-1)
-        right_side = (inside == self.within)[..., self.owner]
-        # On the wrong side of a shape only its nearest edge counts: that is where the lens has to go back.
-        least = torch.stack([each.amin(-1) for each in distance.split(self.edges_of_shape, dim=-1)], dim=-1)
-        nearest = distance == least[..., self.owner]
-        sign = torch.where(right_side, 1.0, torch.where(nearest, -1.0, 0.0)).to(distance)
-        room = torch.where(sign != 0, sign * distance + reach, self.no_limit)
-        inward = (sign / distance.clamp(min=torch.finfo(distance.dtype).tiny)).unsqueeze(-1) * offset
-        return room, torch.where((distance == 0).unsqueeze(-1), self.inward.to(distance.dtype), inward)
+        sign, no_limit = self.sign, None
+        if len(self.rings):
+            wrong_side = self._on_the_wrong_side(position)
+            if wrong_side.any():
+                sign, no_limit = self._back_by_the_nearest(distance, wrong_side)
+        room = sign * distance + self.reach
+        inward = (sign / distance.clamp(min=TINY)).unsqueeze(-1) * offset
+        if no_limit is not None:
+            room = room.masked_fill(no_limit, self.no_limit)
+        on_edge = distance == 0
+        if on_edge.any():
+            inward = torch.where(on_edge.unsqueeze(-1), self.inward, inward)
+        return room, inward
+
+    def _on_the_wrong_side(self, position: Tensor) -> Bool[Tensor, "*batch n s"]:
+        crossed = is_crossed(position, self.edges[self.rings]).to(position.dtype)
+        inside = (crossed @ self.ring_owner).remainder(2) > 0.5
+        return inside != self.ring_within
+
+    def _back_by_the_nearest(self, distance: Tensor, wrong_side: Tensor) -> tuple[Tensor, Tensor]:
+        """Give the signs, and the edges that do not count.
+
+        On the wrong side of a shape only its nearest edge counts: that is where the lens has to go back.
+        """
+        shapes = wrong_side.shape[-1]
+        owner = self.owner.expand_as(distance)
+        least = distance.new_full((*distance.shape[:-1], shapes), torch.inf).scatter_reduce(-1, owner, distance, "amin")
+        wrong, nearest = wrong_side[..., self.owner], distance == least[..., self.owner]
+        return torch.where(wrong & nearest, -1.0, self.sign), wrong & ~nearest

@@ -8,11 +8,14 @@ from multilens.cues import LensDefocus, PairStereo
 from multilens.problem import Problem, Question
 from multilens.search.variables import Variables
 
-VALUES = 128
+VALUES = 64
 """Tried for each focus, by equal factors over its range."""
 
 SWEEPS = 2
 """Through all foci; more change little, and the next wave comes anyway."""
+
+FEW_AT_ONCE = 8
+"""Layouts whose trials, a number for each value and depth, stay in the processor's cache."""
 
 MOST_AT_ONCE = 4096
 """Layouts tried together where every cue has to be asked."""
@@ -41,7 +44,8 @@ def refocus(
     if not foci:
         return share
     if isinstance(question, Problem) and question.is_envelope:
-        return _by_lines(question, variables, share, foci, afresh)
+        few = share.split(FEW_AT_ONCE)
+        return torch.cat([_by_lines(question, variables, layouts, foci, afresh) for layouts in few])
     for element in (variables.focus_start + f for _ in range(SWEEPS) for f in foci):
         share = _one_by_one(question, variables, share, element)
     return share

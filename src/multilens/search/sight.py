@@ -6,10 +6,11 @@ from math import isfinite
 import torch
 from jaxtyping import Float
 from torch import Tensor
+from torch.nn.functional import pad
 
 from multilens.geometry.pairs import pair_indices
 from multilens.numerics import soft_maximum
-from multilens.problem import Question
+from multilens.problem import Problem, Question
 from multilens.search.limits import Limits
 from multilens.search.variables import Variables
 
@@ -57,6 +58,8 @@ class Seer:
         device = variables.low.device
         self.question, self.variables = question, variables
         self.limits = Limits(question, coarse=True, device=device)
+        envelope = isinstance(question, Problem) and question.is_envelope
+        self.closed_form = question.closed_form(device) if isinstance(question, Problem) and envelope else None
         self.unit = question.back.size / 4
         """mm"""
         self.scale: float | None = None
@@ -72,6 +75,7 @@ class Seer:
         self.upper = torch.ones_like(variables.low).index_copy(0, variables.free, variables.upper)
         span = torch.where(self.free, variables.high - variables.low, 0) / self.unit
         self.span = span[self.columns]
+        self.first_span, self.second_span = self.span[self.first], self.span[self.second]
         block = self.columns[:, None, :, None] * self.size + self.columns[None, :, None, :]
         self.entries = block.flatten()
         """Where each number of each lens' block with each lens stands in a flat matrix."""
@@ -98,21 +102,36 @@ class Seer:
             share: where.
             width: of the soft maximum of several terms, in units of their size.
         """
-        point = share.detach().requires_grad_()
-        layout = self.variables.layout_of(point)
-        terms = self.question.terms(layout)
-        value = self._minimised(terms, width)
-        (slope,) = torch.autograd.grad(value.sum(), point)
+        value, slope = self._value_and_slope(share, width)
         with torch.no_grad():
             room = self.limits(self.variables.layout_of(share))
-            first, second = self.span[self.first], self.span[self.second]
-            body = -torch.ones_like(room.apart).unsqueeze(-1)
-            pull = torch.cat([room.parting, body], dim=-1) * first
-            push = torch.cat([-room.parting, body], dim=-1) * second
-            rim = -torch.ones_like(room.inside).unsqueeze(-1)
-            edge = torch.cat([room.inward, rim], dim=-1) * self.span.unsqueeze(-2)
+            pull = pad(room.parting, (0, 1), value=-1.0)
+            push = pad(-room.parting, (0, 1), value=-1.0)
+            edge = pad(room.inward, (0, 1), value=-1.0)
             every = torch.cat([room.apart, room.inside.flatten(-2)], dim=-1) / self.unit
-        return Sight(share, value.detach(), slope * self.free, every, pull, push, edge)
+            return Sight(
+                share,
+                value,
+                slope,
+                every,
+                pull * self.first_span,
+                push * self.second_span,
+                edge * self.span.unsqueeze(-2),
+            )
+
+    def _value_and_slope(self, share: Tensor, width: float) -> tuple[Float[Tensor, " b"], Float[Tensor, "b v"]]:
+        if self.closed_form is not None and self.scale is None:
+            with torch.no_grad():
+                layout = self.variables.layout_of(share)
+                score, slopes = self.closed_form(layout)
+                score = score.clamp_(min=LEAST_SCORE)
+                slope = self.variables.slope_of(layout, *slopes) / score.unsqueeze(-1)
+                return score.log().to(share.dtype), slope.to(share.dtype)
+        point = share.detach().requires_grad_()
+        terms = self.question.terms(self.variables.layout_of(point))
+        value = self._minimised(terms, width)
+        (slope,) = torch.autograd.grad(value.sum(), point)
+        return value.detach(), slope * self.free
 
     def _minimised(self, terms: Float[Tensor, "b m"], width: float) -> Float[Tensor, " b"]:
         if self.scale is None:
@@ -122,13 +141,13 @@ class Seer:
     def along(self, sight: Sight, step: Float[Tensor, "b v"]) -> Float[Tensor, "b m"]:
         """Give by how much each room grows along a step, to first order."""
         own = step[:, self.columns]
-        pairs = (sight.pull * own[:, self.first]).sum(-1) + (sight.push * own[:, self.second]).sum(-1)
-        return torch.cat([pairs, (sight.edge * own.unsqueeze(-2)).sum(-1).flatten(-2)], dim=-1)
+        pairs = (sight.pull * own[:, self.first] + sight.push * own[:, self.second]).sum(-1)
+        return torch.cat([pairs, (sight.edge @ own.unsqueeze(-1)).flatten(1)], dim=-1)
 
     def gather(self, sight: Sight, force: Float[Tensor, "b m"]) -> Float[Tensor, "b v"]:
         """Give the sum over the limits of each one's gradient times a force."""
         pairs, edges = self._apart(sight, force)
-        own = (sight.edge * edges.unsqueeze(-1)).sum(-2)
+        own = (edges.unsqueeze(-2) @ sight.edge).squeeze(-2)
         own = own.index_add(1, self.first, sight.pull * pairs.unsqueeze(-1))
         own = own.index_add(1, self.second, sight.push * pairs.unsqueeze(-1))
         return own.new_zeros(len(own), self.size).index_copy(1, self.columns.flatten(), own.flatten(1))

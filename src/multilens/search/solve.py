@@ -30,8 +30,14 @@ from multilens.search.variables import Variables
 from multilens.search.variation import Varier
 from multilens.storage import source_commit, versions
 
-FROM_AFAR = BarrierSettings(steps=50, pressure=(0.1, 1e-7))
-FROM_NEARBY = BarrierSettings(steps=35, pressure=(0.01, 1e-7))
+STEPS, STEPS_PER_LENS = 24, 4
+"""Of the barrier; more lenses take longer to come to rest."""
+
+FROM_AFAR, FROM_NEARBY = 2e-2, 3e-3
+"""Pressure at which fresh starts and variations begin: the less, the more they keep of where they begin."""
+
+LAST = 1e-6
+"""Pressure at which they end."""
 
 BATCH = 32
 """Layouts that settle together: as many as the processor takes hardly longer for than for one."""
@@ -211,7 +217,8 @@ class _Search:
         self._claim(self.exact.layout(x))
         self._tell("polish", 1.0, self.alive)
 
-    def _settle(self, share: Tensor, settings: BarrierSettings, afresh: bool) -> Settled:
+    def _settle(self, share: Tensor, pressure: float, afresh: bool) -> Settled:
+        settings = BarrierSettings(STEPS + STEPS_PER_LENS * self.exact.count, (pressure, LAST))
         order = torch.rand(share.shape[1] - self.variables.focus_start, generator=self.generator)
         share = refocus(self.question, self.variables, share, order, afresh)
         # The first answer is waited for; whatever comes after it is not.

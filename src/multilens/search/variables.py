@@ -62,6 +62,10 @@ class Variables:
         """Largest value of each element of x; the least is 0."""
         self.span = (self.high - self.low)[self.free]
         """What one unit of each element of x is in mm (positions and radii; foci are not linear)."""
+        start = self.focus_start
+        ratio = (self.high[start:] / self.low[start:]).log()
+        self.stretch = torch.cat([(self.high - self.low)[:start], ratio])
+        """What one unit of every unknown is: mm of positions and radii, the logarithm of foci; 0 if it is not free."""
 
     def __len__(self) -> int:
         return len(self.free)
@@ -81,6 +85,19 @@ class Variables:
         near, far = self.low[start:], self.high[start:]
         focus = near * (far / near) ** share[..., start:]
         return Layout(linear[..., : 2 * n].unflatten(-1, (n, 2)), linear[..., 2 * n :], focus[..., self.tier_of])
+
+    def slope_of(
+        self,
+        layout: Layout,
+        position: Float[Tensor, "*batch n 2"],
+        aperture_radius: Float[Tensor, "*batch n"],
+        focus: Float[Tensor, "*batch n t"],
+    ) -> Float[Tensor, "*batch v"]:
+        """Give the derivative with respect to every unknown from those with respect to the parts of a layout; 0 if not free."""
+        linear = torch.cat([position.flatten(-2), aperture_radius], dim=-1)
+        own = linear.new_zeros(*linear.shape[:-1], len(self.low) - self.focus_start)
+        own.index_add_(-1, self.tier_of.flatten(), (focus * layout.focus).flatten(-2))
+        return torch.cat([linear, own], dim=-1) * self.stretch
 
     def vector(self, layout: Layout) -> Float[Tensor, "*batch d"]:
         """Give the vector of a layout, held to its bounds."""
