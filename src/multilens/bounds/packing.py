@@ -11,7 +11,7 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 SAFE = 1e-9
-"""Relative; by how much room must be missing before it counts."""
+"""Relative; by how much room must be missing before it counts, and by which bodies may stand closer: roots magnify rounding."""
 
 MOST_ORDERED = 4
 """Bodies, the largest, that are looked at in every order; all orders of more would be too many."""
@@ -87,7 +87,7 @@ def ladder_length(radii: Float[np.ndarray, "m n"], across: float, gap: float) ->
     for i, j in combinations(range(count), 2):
         together = radii[:, i] + radii[:, j]
         beside = np.maximum(across - together, 0.0)
-        apart[i, j] = apart[j, i] = np.sqrt(np.maximum((together + gap) ** 2 - beside**2, 0.0))
+        apart[i, j] = apart[j, i] = np.sqrt(np.maximum(((together + gap) * (1 - SAFE)) ** 2 - beside**2, 0.0))
     lengths = []
     for order in permutations(range(count)):
         if order[0] > order[-1]:
@@ -118,7 +118,7 @@ def least_angle(
     x, y = np.maximum(round_radius - first, 0.0), np.maximum(round_radius - second, 0.0)
     apart = first + second + gap
     with np.errstate(divide="ignore", invalid="ignore"):
-        cosine = (x**2 + y**2 - apart**2) / (2 * x * y)
+        cosine = (x**2 + y**2 - (apart * (1 - SAFE)) ** 2) / (2 * x * y)
     # A body that fills the back stands in the middle, where angles mean nothing.
     known = (x <= apart) & (y <= apart) & (x > 0) & (y > 0)
     return np.where(known, np.arccos(np.clip(np.where(known, cosine, 1.0), -1.0, 1.0)), 0.0)
