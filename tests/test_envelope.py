@@ -1,0 +1,206 @@
+"""The mean of the least squared error in closed form against the plain sum over depths."""
+
+import pytest
+import torch
+from hypothesis import given
+from hypothesis import strategies as st
+from torch import Tensor
+from torch.autograd import grad, gradcheck
+
+from multilens.envelope import DepthMoments, mean_least_square
+
+ROUNDING = 1e-9
+"""Relative to the score with no V at all that is as flat as the flattest; sums of fourth powers of the depths cancel."""
+
+INFINITE = torch.tensor(torch.inf, dtype=torch.float64)
+
+
+def summed(gain: Tensor, slope: Tensor, focus: Tensor, depths: Tensor, weights: Tensor) -> Tensor:
+    """Ask every cue at every depth."""
+    stereo = gain[..., None, None] * depths**2
+    defocus = slope.unsqueeze(-1) * depths * (depths - focus.unsqueeze(-1)).abs()
+    return (torch.cat([stereo, defocus], dim=-2).amin(-2).square() * weights).sum(-1)
+
+
+def drawn(seed: int, lenses: int = 5, batch: tuple[int, ...] = (4,)) -> tuple[Tensor, Tensor, Tensor]:
+    """Gain, slopes and foci for depths from 200 to 5000 mm; the slopes are within a factor of 100 of the gain, either side."""
+    random = torch.Generator().manual_seed(seed)
+    gain = torch.rand(batch, dtype=torch.float64, generator=random) + 0.1
+    slope = gain.unsqueeze(-1) * 10 ** (4 * torch.rand(*batch, lenses, dtype=torch.float64, generator=random) - 2)
+    return gain, slope, 100 * 80 ** torch.rand(*batch, lenses, dtype=torch.float64, generator=random)
+
+
+def depths_of(seed: int, count: int = 40) -> tuple[Tensor, Tensor]:
+    """Depths from 200 to 5000 mm in no order, and weights of which some are 0."""
+    random = torch.Generator().manual_seed(seed + 1)
+    depths = 200 * 25 ** torch.rand(count, dtype=torch.float64, generator=random)
+    return depths, (torch.rand(count, dtype=torch.float64, generator=random) - 0.2).clamp(min=0)
+
+
+def assert_both_agree(
+    gain: Tensor, slope: Tensor, focus: Tensor, depths: Tensor, weights: Tensor, error: float = ROUNDING
+) -> None:
+    found = mean_least_square(gain, slope, focus, DepthMoments(depths, weights))
+    expected = summed(gain, slope, focus, depths, weights)
+    size = (slope.amin(-1).minimum(gain).square() * (depths**4 * weights).sum()).max().item()
+    torch.testing.assert_close(found, expected, rtol=error, atol=error * size)
+
+
+@given(st.integers(0, 2**31), st.integers(1, 12))
+def test_as_the_sum_over_depths(seed: int, lenses: int) -> None:
+    assert_both_agree(*drawn(seed, lenses), *depths_of(seed))
+
+
+@given(st.integers(0, 2**31), st.integers(1, 6))
+def test_as_the_sum_without_stereo(seed: int, lenses: int) -> None:
+    gain, slope, focus = drawn(seed, lenses)
+    assert_both_agree(INFINITE.expand_as(gain), slope, focus, *depths_of(seed))
+
+
+@given(st.integers(0, 2**31), st.integers(2, 6), st.booleans())
+def test_as_the_sum_where_slopes_tie(seed: int, lenses: int, with_stereo: bool) -> None:
+    gain, slope, focus = drawn(seed, lenses)
+    level = slope[:, :1].expand_as(slope)
+    assert_both_agree(gain if with_stereo else INFINITE.expand_as(gain), level, focus, *depths_of(seed))
+
+
+@given(st.integers(0, 2**31), st.integers(2, 6))
+def test_as_the_sum_where_foci_tie(seed: int, lenses: int) -> None:
+    gain, slope, focus = drawn(seed, lenses)
+    assert_both_agree(gain, slope, focus[:, :1].expand_as(focus), *depths_of(seed))
+
+
+@given(st.integers(0, 2**31), st.integers(2, 6))
+def test_as_the_sum_where_whole_lenses_tie(seed: int, lenses: int) -> None:
+    gain, slope, focus = drawn(seed, lenses)
+    assert_both_agree(gain, slope[:, :1].expand_as(slope), focus[:, :1].expand_as(focus), *depths_of(seed))
+
+
+@given(st.integers(0, 2**31), st.integers(1, 6))
+def test_as_the_sum_where_slopes_differ_by_rounding(seed: int, lenses: int) -> None:
+    gain, slope, focus = drawn(seed, lenses)
+    nearly = slope[:, :1] * (1 + 2e-16 * torch.arange(lenses, dtype=torch.float64))
+    assert_both_agree(gain, nearly, focus, *depths_of(seed))
+
+
+@pytest.mark.parametrize("part", [0.01, 0.5, 0.999999, 1.0, 1.000001])
+def test_as_the_sum_where_a_v_is_flatter_than_the_line_or_as_steep(part: float) -> None:
+    gain, _, focus = drawn(3, 2)
+    assert_both_agree(gain, part * gain.unsqueeze(-1).expand(4, 2), focus, *depths_of(3))
+
+
+def test_as_the_sum_where_a_depth_is_in_focus() -> None:
+    depths, weights = depths_of(0)
+    gain, slope, _ = drawn(0, 3)
+    assert_both_agree(gain, slope, depths[:3].expand(4, 3), depths, weights)
+
+
+def test_as_the_sum_where_every_focus_is_off_the_depths() -> None:
+    gain, slope, _ = drawn(1, 2)
+    for focus in (20.0, 50_000.0):
+        assert_both_agree(gain, slope, torch.full_like(slope, focus), *depths_of(1))
+
+
+def test_as_the_sum_at_a_single_depth() -> None:
+    one = torch.ones(1, dtype=torch.float64)
+    assert_both_agree(*drawn(2), 700 * one, one)
+
+
+def test_as_the_sum_where_depths_repeat() -> None:
+    depths, weights = depths_of(5)
+    assert_both_agree(*drawn(5), torch.cat([depths, depths[:9], depths[:9]]), torch.cat([weights, weights[:18]]))
+
+
+@given(st.integers(0, 2**31))
+def test_as_the_sum_from_single_precision(seed: int) -> None:
+    single = [x.float() for x in drawn(seed)]
+    depths, weights = depths_of(seed)
+    found = mean_least_square(*single, DepthMoments(depths, weights))
+    expected = summed(*(x.double() for x in single), depths, weights)
+    assert found.dtype == torch.float32
+    # Only what goes in and what comes out is rounded to seven digits.
+    torch.testing.assert_close(found.double(), expected, rtol=2e-7, atol=0)
+
+
+def test_stereo_alone_is_the_sum_over_depths() -> None:
+    gain, depths, weights = drawn(0)[0], *depths_of(0)
+    nothing = gain.new_empty(4, 0)
+    found = mean_least_square(gain, nothing, nothing, DepthMoments(depths, weights))
+    torch.testing.assert_close(found, gain**2 * (depths**4 * weights).sum(), rtol=1e-14, atol=0)
+
+
+def test_a_single_layout_is_no_batch() -> None:
+    assert_both_agree(*drawn(4, batch=()), *depths_of(4))
+
+
+def test_a_batch_may_have_two_dimensions() -> None:
+    assert_both_agree(*drawn(4, batch=(2, 3)), *depths_of(4))
+
+
+def test_a_layout_scores_the_same_to_the_bit_alone_and_in_a_batch() -> None:
+    gain, slope, focus = drawn(6, batch=(7,))
+    moments = DepthMoments(*depths_of(6))
+    alone = torch.stack([mean_least_square(*each, moments) for each in zip(gain, slope, focus, strict=True)])
+    assert mean_least_square(gain, slope, focus, moments).equal(alone)
+
+
+@given(st.integers(0, 2**31), st.booleans())
+def test_the_gradient_is_that_of_the_sum(seed: int, with_stereo: bool) -> None:
+    gain, slope, focus = drawn(seed)
+    gain = gain if with_stereo else INFINITE.expand_as(gain).clone()
+    depths, weights = depths_of(seed)
+    unknowns = [x.requires_grad_() for x in (gain, slope, focus)]
+    wanted = unknowns if with_stereo else unknowns[1:]
+    closed = grad(mean_least_square(*unknowns, DepthMoments(depths, weights)).sum(), wanted)
+    for one, other in zip(closed, grad(summed(*unknowns, depths, weights).sum(), wanted), strict=True):
+        torch.testing.assert_close(one, other, rtol=ROUNDING, atol=ROUNDING * other.abs().max().item())
+
+
+def test_without_stereo_the_gradient_in_the_gain_is_zero() -> None:
+    gain, slope, focus = drawn(0)
+    gain = INFINITE.expand_as(gain).clone().requires_grad_()
+    (found,) = grad(mean_least_square(gain, slope, focus, DepthMoments(*depths_of(0))).sum(), gain)
+    assert found.tolist() == [0.0] * 4
+
+
+def test_gradcheck_away_from_ties() -> None:
+    depths = torch.tensor([1.0, 1.3, 2.2, 3.25, 4.4], dtype=torch.float64)
+    moments = DepthMoments(depths, torch.full((5,), 0.2, dtype=torch.float64))
+    gain = torch.tensor([0.3, 0.5], dtype=torch.float64, requires_grad=True)
+    slope = torch.tensor([[0.7, 1.9], [0.9, 0.4]], dtype=torch.float64, requires_grad=True)
+    focus = torch.tensor([[1.2, 3.1], [3.9, 1.15]], dtype=torch.float64, requires_grad=True)
+    assert gradcheck(lambda *x: mean_least_square(*x, moments), (gain, slope, focus))
+
+
+def test_the_gradient_at_a_tie_is_that_of_the_winners() -> None:
+    # Two lenses alike: whichever is moved away, the other stays. The shares of both add up to that of one alone.
+    depths, weights = depths_of(0)
+    moments = DepthMoments(depths, weights)
+    gain, slope, focus = drawn(0, 1)
+    pair, single = ([x.expand(4, count).clone().requires_grad_() for x in (slope, focus)] for count in (2, 1))
+    twice, once = (grad(mean_least_square(gain, *x, moments).sum(), x) for x in (pair, single))
+    for both, alone in zip(twice, once, strict=True):
+        torch.testing.assert_close(both.sum(-1, keepdim=True), alone, rtol=1e-12, atol=0)
+
+
+def test_depths_in_any_order_are_the_same_to_the_bit() -> None:
+    depths, weights = depths_of(8)
+    order = torch.randperm(len(depths), generator=torch.Generator().manual_seed(0))
+    one, other = (mean_least_square(*drawn(8), DepthMoments(depths[at], weights[at])) for at in (order, order.flip(0)))
+    assert one.equal(other)
+
+
+def test_thousands_of_depths_lose_no_digits() -> None:
+    depths = torch.linspace(200, 5000, 50_000, dtype=torch.float64)
+    weights = torch.full_like(depths, 1 / 50_000)
+    # Steep Vs: what is left of the sums of fourth powers is a millionth of them.
+    gain, slope, focus = drawn(9, 4)
+    found = mean_least_square(gain, 100 * slope, focus, DepthMoments(depths, weights))
+    torch.testing.assert_close(found, summed(gain, 100 * slope, focus, depths, weights), rtol=1e-9, atol=0)
+
+
+def test_no_v_counts_for_less_than_nothing() -> None:
+    # A single depth in focus: the three moments cancel, and their rounding must not become a negative square.
+    depth = torch.tensor([1234.567], dtype=torch.float64)
+    moments = DepthMoments(depth, torch.ones(1, dtype=torch.float64))
+    assert 0 <= mean_least_square(INFINITE, depth.new_tensor([0.3]), depth, moments).item() < 1e-2
