@@ -8,12 +8,8 @@ from torch import Tensor
 
 from multilens.geometry.distance import is_crossed, outward_normals
 from multilens.geometry.pairs import pair_indices
-from multilens.geometry.simplify import few_edges
 from multilens.layout import Layout
 from multilens.problem import Question
-
-COARSE = 2e-4
-"""Part of the back's diagonal by which outlines of many edges are made smaller to have few."""
 
 TINY = 1e-300
 
@@ -49,20 +45,15 @@ class Limits:
 
     Args:
         question: whose lenses and back are taken.
-        coarse: cut round corners of the outline into edges and give rims of many edges few, on the safe side: then a step costs
-            the same for any outline, and an edge's room changes smoothly where lenses are on the back.
         device: where to compute.
     """
 
-    def __init__(self, question: Question, coarse: bool = False, device: str | torch.device = "cpu") -> None:
+    def __init__(self, question: Question, device: str | torch.device = "cpu") -> None:
         self.question = question
         back = question.back
         self.no_limit = back.size
         """mm; room that stands for an edge that limits nothing from where the lens is."""
         sides = [(back.outline, True, 0.0)] + [(keep.shape, False, -keep.clearance) for keep in back.keep_outs]
-        if coarse:
-            tolerance = COARSE * back.size
-            sides = [(few_edges(shape, within, tolerance), within, reach) for shape, within, reach in sides]
         edges = [torch.from_numpy(shape.segments) for shape, _, _ in sides]
         counts = torch.tensor([len(e) for e in edges], dtype=torch.long)
         kind = {"dtype": torch.float64, "device": device}

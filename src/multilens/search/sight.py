@@ -11,7 +11,7 @@ from torch.nn.functional import pad
 from multilens.geometry.pairs import pair_indices
 from multilens.numerics import soft_maximum
 from multilens.problem import Problem, Question
-from multilens.search.limits import Limits
+from multilens.search.near_limits import NearLimits
 from multilens.search.variables import Variables
 
 LEAST_SCORE = 1e-300
@@ -57,7 +57,7 @@ class Seer:
     def __init__(self, question: Question, variables: Variables) -> None:
         device = variables.low.device
         self.question, self.variables = question, variables
-        self.limits = Limits(question, coarse=True, device=device)
+        self.limits = NearLimits(question, device)
         envelope = isinstance(question, Problem) and question.is_envelope
         self.closed_form = question.closed_form(device) if isinstance(question, Problem) and envelope else None
         self.unit = question.back.size / 4
