@@ -5,7 +5,7 @@ from jaxtyping import Float, Int
 from torch import Tensor
 
 
-def pair_indices(count: int, device: torch.device | None = None) -> Int[Tensor, "2 p"]:
+def pair_indices(count: int, device: torch.device | str | None = None) -> Int[Tensor, "2 p"]:
     """Give the first and the second member of all count (count - 1) / 2 pairs, in the order 0-1, 0-2, ..., 1-2, ..."""
     return torch.triu_indices(count, count, offset=1, device=device)
 
