@@ -17,7 +17,7 @@ from multilens.geometry.pairs import pair_distance, pair_indices
 from multilens.layout import Layout
 from multilens.lens import Lens
 
-MOST_EDGES_EXACT = 48
+MOST_EDGES_EXACT = 8
 """Beyond this many edges a back is sampled for the wide search, so that a step costs the same for any outline."""
 
 
@@ -78,7 +78,7 @@ class SampledRoom:
         cells: along the longer side of the back's bounding box.
     """
 
-    def __init__(self, back: Back, cells: int = 256) -> None:
+    def __init__(self, back: Back, cells: int = 96) -> None:
         left, top, right, bottom = back.outline.bounds
         width, height = right - left, bottom - top
         spacing = max(width, height) / cells

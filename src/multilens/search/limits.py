@@ -1,13 +1,13 @@
-"""The constraints as a search wants them: room and direction for each pair of lenses and for each edge that a lens may touch."""
+"""The constraints, exactly: room and direction for each pair of lenses and for each edge that a lens may touch."""
 
 from dataclasses import dataclass
 
+import numpy as np
 import torch
-from jaxtyping import Bool, Float
+from jaxtyping import Float
 from torch import Tensor
 
-from multilens.geometry.distance import is_crossed, outward_normals
-from multilens.geometry.pairs import pair_indices
+from multilens.geometry.distance import outward_normals
 from multilens.layout import Layout
 from multilens.problem import Question
 
@@ -41,84 +41,86 @@ class Limits:
     """The room that is left at each pair of lenses and at each edge of the back.
 
     A corner of the back limits a lens by two edges at once. The least distance alone would have a kink there, just where the
-    best layouts are; the edges one by one have none.
+    best layouts are; the edges one by one have none. In NumPy, which asks little for each of many small steps.
 
     Args:
         question: whose lenses and back are taken.
-        device: where to compute.
     """
 
-    def __init__(self, question: Question, device: str | torch.device = "cpu") -> None:
+    def __init__(self, question: Question) -> None:
         self.question = question
         back = question.back
         self.no_limit = back.size
         """mm; room that stands for an edge that limits nothing from where the lens is."""
         sides = [(back.outline, True, 0.0)] + [(keep.shape, False, -keep.clearance) for keep in back.keep_outs]
-        edges = [torch.from_numpy(shape.segments) for shape, _, _ in sides]
-        counts = torch.tensor([len(e) for e in edges], dtype=torch.long)
-        kind = {"dtype": torch.float64, "device": device}
-        self.edges = torch.cat(edges).to(device)
-        self.owner = torch.arange(len(sides)).repeat_interleave(counts).to(device)
-        within = torch.tensor([within for _, within, _ in sides], dtype=torch.bool, device=device)
+        edges = np.concatenate([shape.segments for shape, _, _ in sides])
+        counts = [len(shape.segments) for shape, _, _ in sides]
+        self.owner = np.repeat(np.arange(len(sides)), counts)
+        self.first_edge = np.concatenate([[0], np.cumsum(counts)[:-1]])
+        within = np.array([within for _, within, _ in sides])
         reach = [reach + (shape.radius if within else -shape.radius) for shape, within, reach in sides]
-        self.reach = torch.tensor(reach, **kind)[self.owner]
-        self.start, self.along = self.edges[:, 0], self.edges[:, 1] - self.edges[:, 0]
-        length_squared = self.along.square().sum(-1, keepdim=True)
-        self.along_share = self.along / length_squared.where(length_squared > 0, 1)
+        self.reach = np.array(reach)[self.owner]
+        self.start, self.along = edges[:, 0], edges[:, 1] - edges[:, 0]
+        squared = (self.along**2).sum(-1, keepdims=True)
+        self.along_share = self.along / np.where(squared > 0, squared, 1)
         # A point or a line has no inside: lenses that stay within its reach are on the way out wherever they are.
-        flat = torch.tensor([shape.core.area == 0 for shape, _, _ in sides], dtype=torch.bool, device=device)
-        self.sign = torch.where(flat & within, -1.0, 1.0).to(**kind)[self.owner]
-        self.rings = (~flat[self.owner]).nonzero().flatten()
-        self.ring_owner = torch.nn.functional.one_hot(self.owner[self.rings], len(sides)).to(**kind)
-        self.ring_within = within & ~flat
+        self.flat = np.array([shape.core.area == 0 for shape, _, _ in sides])
+        self.sign = np.where(self.flat & within, -1.0, 1.0)[self.owner]
+        self.within = within
+        end = edges[:, 1]
+        rise = end[:, 1] - self.start[:, 1]
+        self.low, self.high, self.lean = self.start[:, 1], end[:, 1], self.along[:, 0] / np.where(rise != 0, rise, 1)
         # The way to go from right on an edge, where a lens off the back is held by its bounds: inward, or away from a keep-out.
-        side = torch.where(within[self.owner], -1.0, 1.0).to(self.edges)
-        self.inward = side.unsqueeze(-1) * outward_normals(self.edges)
-        self.first, self.second = pair_indices(len(question.lenses), device)
-        self.clearance = torch.tensor([lens.clearance for lens in question.lenses], **kind)
+        outward = outward_normals(torch.from_numpy(edges)).numpy()
+        self.inward = np.where(within[self.owner], -1.0, 1.0)[:, None] * outward
+        self.first, self.second = np.triu_indices(len(question.lenses), 1)
+        self.clearance = np.array([lens.clearance for lens in question.lenses])
         self.least_apart = self.clearance[self.first] + self.clearance[self.second] + question.gap
 
     def __call__(self, layout: Layout) -> Room:
-        """Give the room left at every limit, in float64."""
-        position, radius = layout.position.double(), layout.aperture_radius.double()
-        away = position[..., self.first, :] - position[..., self.second, :]
-        distance = away.norm(dim=-1)
-        apart = distance - (radius[..., self.first] + radius[..., self.second] + self.least_apart)
-        parting = away / distance.clamp(min=TINY).unsqueeze(-1)
-        room, inward = self._at_edges(position)
-        return Room(apart, parting, room - (radius + self.clearance).unsqueeze(-1), inward)
+        """Give the room left at every limit of layouts on the processor, in float64."""
+        position, radius = layout.position.detach().double().numpy(), layout.aperture_radius.detach().double().numpy()
+        return Room(*(torch.from_numpy(part) for part in self.at(position, radius)))
 
-    def _at_edges(self, position: Float[Tensor, "*batch n 2"]) -> tuple[Tensor, Tensor]:
-        from_start = position.unsqueeze(-2) - self.start
-        share = (from_start * self.along_share).sum(-1).clamp_(0, 1)
-        offset = from_start - share.unsqueeze(-1) * self.along
-        distance = offset.norm(dim=-1)
-        sign, no_limit = self.sign, None
-        if len(self.rings):
-            wrong_side = self._on_the_wrong_side(position)
-            if wrong_side.any():
-                sign, no_limit = self._back_by_the_nearest(distance, wrong_side)
+    def at(
+        self, position: Float[np.ndarray, "*batch n 2"], radius: Float[np.ndarray, "*batch n"]
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """Give the four parts of a `Room`."""
+        away = position[..., self.first, :] - position[..., self.second, :]
+        distance = np.sqrt((away**2).sum(-1))
+        apart = distance - (radius[..., self.first] + radius[..., self.second] + self.least_apart)
+        parting = away / np.maximum(distance, TINY)[..., None]
+        room, inward = self._at_edges(position)
+        return apart, parting, room - (radius + self.clearance)[..., None], inward
+
+    def _at_edges(self, position: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        from_start = position[..., None, :] - self.start
+        share = np.clip((from_start * self.along_share).sum(-1), 0, 1)
+        offset = from_start - share[..., None] * self.along
+        distance = np.sqrt((offset**2).sum(-1))
+        sign, counts = self._signs(position, distance)
         room = sign * distance + self.reach
-        inward = (sign / distance.clamp(min=TINY)).unsqueeze(-1) * offset
-        if no_limit is not None:
-            room = room.masked_fill(no_limit, self.no_limit)
+        inward = (sign / np.maximum(distance, TINY))[..., None] * offset
+        if counts is not None:
+            room = np.where(counts, room, self.no_limit)
         on_edge = distance == 0
         if on_edge.any():
-            inward = torch.where(on_edge.unsqueeze(-1), self.inward, inward)
+            inward = np.where(on_edge[..., None], self.inward, inward)
         return room, inward
 
-    def _on_the_wrong_side(self, position: Tensor) -> Bool[Tensor, "*batch n s"]:
-        crossed = is_crossed(position, self.edges[self.rings]).to(position.dtype)
-        inside = (crossed @ self.ring_owner).remainder(2) > 0.5
-        return inside != self.ring_within
-
-    def _back_by_the_nearest(self, distance: Tensor, wrong_side: Tensor) -> tuple[Tensor, Tensor]:
-        """Give the signs, and the edges that do not count.
+    def _signs(self, position: np.ndarray, distance: np.ndarray) -> tuple[np.ndarray, np.ndarray | None]:
+        """Give the sign of each distance, and which edges count at all, None where all do.
 
         On the wrong side of a shape only its nearest edge counts: that is where the lens has to go back.
         """
-        shapes = wrong_side.shape[-1]
-        owner = self.owner.expand_as(distance)
-        least = distance.new_full((*distance.shape[:-1], shapes), torch.inf).scatter_reduce(-1, owner, distance, "amin")
-        wrong, nearest = wrong_side[..., self.owner], distance == least[..., self.owner]
-        return torch.where(wrong & nearest, -1.0, self.sign), wrong & ~nearest
+        if self.flat.all():
+            return self.sign, None
+        x, y = position[..., None, 0], position[..., None, 1]
+        crossed = ((self.low > y) != (self.high > y)) & (x < self.start[:, 0] + (y - self.low) * self.lean)
+        inside = np.add.reduceat(crossed, self.first_edge, axis=-1, dtype=int) % 2 == 1
+        wrong = (inside != self.within) & ~self.flat
+        if not wrong.any():
+            return self.sign, None
+        least = np.minimum.reduceat(distance, self.first_edge, axis=-1)[..., self.owner]
+        lost, nearest = wrong[..., self.owner], distance == least
+        return np.where(lost & nearest, -1.0, self.sign), ~lost | nearest

@@ -59,7 +59,9 @@ class NearLimits:
         tolerance = COARSE * back.size
         sides = [(few_edges(back.outline, True, tolerance), True, 0.0)]
         sides += [(few_edges(keep.shape, False, tolerance), False, -keep.clearance) for keep in back.keep_outs]
-        self.edges = torch.cat([_rows(shape.segments, shape.radius, *rest) for shape, *rest in sides]).to(**kind)
+        self.edges = torch.cat(
+            [_rows(shape.segments, shape.radius, within, clear) for shape, within, clear in sides]
+        ).to(**kind)
         left, top, right, bottom = back.outline.bounds
         self.corner = torch.tensor([left, top], **kind)
         self.per_cell = CELLS / torch.tensor([right - left, bottom - top], **kind)

@@ -9,19 +9,15 @@ import torch
 from jaxtyping import Float
 from torch import Tensor
 
-from multilens.geometry.pairs import pair_indices
 from multilens.problem import Question
-from multilens.search.limits import Limits
+from multilens.search.alone import Alone
 from multilens.search.variables import Variables
 
 MARGIN = 1e-10
 """Room that a polished layout keeps beyond what is asked, in units of the back's diagonal: more than rounding takes."""
 
-MOST_EDGES_WATCHED = 12
-"""Around each lens, those that leave it least: a disc rarely touches more than three, and all would slow every step."""
-
-MOST_PAIRS_WATCHED = 4
-"""Pairs for each lens, those with the least room: few of all pairs are ever close."""
+LEAST_SCORE = 1e-12
+"""Part of the score at the start below which its logarithm is not taken."""
 
 ValueAndGradient = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
 
@@ -63,24 +59,28 @@ def polish(
     if not len(x):
         return x
     size = question.back.size
-    scale = question.terms(variables.layout(x)).abs().amax().clamp(min=torch.finfo(x.dtype).tiny)
+    alone = Alone(question, variables)
+    first, _ = alone.terms(x.numpy())
+    # Of a positive score the logarithm is minimised: the tolerance is then a part of it.
+    one = len(first) == 1 and first[0] > 0
+    scale = max(float(np.abs(first).max()), float(np.finfo(float).tiny))
 
     def terms(vector: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         if monotonic() > deadline:
             raise OutOfTimeError
-        point = torch.from_numpy(vector).requires_grad_()
-        values = question.terms(variables.layout(point)) / scale
-        rows = [torch.autograd.grad(value, point, retain_graph=True)[0] for value in values]
-        return values.detach().numpy(), torch.stack(rows).numpy()
+        values, gradient = alone.terms(vector)
+        if one:
+            values = np.maximum(values, LEAST_SCORE * scale)
+            return np.log(values / scale), gradient / values[:, None]
+        return values / scale, gradient / scale
 
     def room(vector: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        values, gradient = limits(torch.from_numpy(vector))
-        return values.numpy() / size - margin, gradient.numpy() / size
+        values, gradient = alone.room(vector)
+        return values / size - margin, gradient / size
 
     # SLSQP is content with constraints that lack as much as its tolerance.
     margin = max(MARGIN, 2 * tolerance)
 
-    limits = _Rows(question, variables)
     objective, constraint, more = _as_one_objective(terms, room, x.numpy())
     value, jacobian = _apart(constraint)
     result = minimize(
@@ -95,36 +95,6 @@ def polish(
     if not np.isfinite(result.x).all():
         return x
     return torch.from_numpy(result.x[: len(x)]).clamp(min=0).minimum(variables.upper)
-
-
-class _Rows:
-    """The limits as rows: room, and its gradient in the free unknowns, of those pairs and edges that are near."""
-
-    def __init__(self, question: Question, variables: Variables) -> None:
-        self.limits, self.variables = Limits(question), variables
-
-    def __call__(self, x: Float[Tensor, " d"]) -> tuple[Float[Tensor, " m"], Float[Tensor, "m d"]]:
-        layout = self.variables.layout(x)
-        room, n = self.limits(layout), layout.count
-        first, second = pair_indices(n)
-        # In the order of pairs and edges, so that a limit keeps its place from one step to the next.
-        near = room.apart.topk(min(len(first), MOST_PAIRS_WATCHED * n), largest=False).indices.sort().values
-        first, second, parting, row = first[near], second[near], room.parting[near], torch.arange(len(near))
-        apart = parting.new_zeros(len(near), len(self.variables.low))
-        for axis in (0, 1):
-            apart[row, 2 * first + axis] = parting[:, axis]
-            apart[row, 2 * second + axis] = -parting[:, axis]
-        apart[row, 2 * n + first] = apart[row, 2 * n + second] = -1
-        watched = min(room.inside.shape[-1], MOST_EDGES_WATCHED)
-        edge = room.inside.topk(watched, largest=False).indices.sort(-1).values
-        inward = room.inward.gather(-2, edge.unsqueeze(-1).expand(-1, -1, 2))
-        inside, lens = inward.new_zeros(n, watched, len(self.variables.low)), torch.arange(n)
-        for axis in (0, 1):
-            inside[lens, :, 2 * lens + axis] = inward[..., axis]
-        inside[lens, :, 2 * n + lens] = -1
-        # Positions and radii are linear in x, and no limit sees the foci.
-        gradient = torch.cat([apart, inside.flatten(0, 1)])[:, self.variables.free] * self.variables.span
-        return torch.cat([room.apart[near], room.inside.gather(-1, edge).flatten()]), gradient
 
 
 def _as_one_objective(

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import pairwise
 from math import inf, nan
 from time import monotonic
 
@@ -30,7 +31,7 @@ from multilens.search.variables import Variables
 from multilens.search.variation import Varier
 from multilens.storage import source_commit, versions
 
-STEPS, STEPS_PER_LENS = 24, 4
+STEPS, STEPS_PER_LENS = 12, 6
 """Of the barrier; more lenses take longer to come to rest."""
 
 FROM_AFAR, FROM_NEARBY = 2e-2, 3e-3
@@ -50,6 +51,9 @@ WORTH_A_POLISH = 2e-3
 
 ALIKE = 3e-5
 """Difference of that below which two layouts came to the same place, and one of them is polished."""
+
+FIRST_ANSWER = 1.0
+"""s; by which the first layouts may overrun a time limit: an answer a little late is better than none."""
 
 PROGRESS = 1e-5
 """Part of the score that counts as progress: less is the polish's business."""
@@ -179,16 +183,16 @@ class _Search:
         share = self.exact.spread(vectors).to(self.variables.low)
         radii = slice(2 * self.exact.count, self.exact.focus_start)
         share[:, radii] *= 0.5
-        for first in range(0, starts, batch):
-            if self._late():
+        # The first answer is waited for, so half of a batch comes first.
+        for first, last in pairwise([0, *range((batch + 1) // 2, starts, batch), starts]):
+            if first and self._late():
                 break
-            share_of_batch = share[first : first + batch]
-            share_of_batch = part(self.variables, self.price, share_of_batch)
+            share_of_batch = part(self.variables, self.price, share[first:last])
             settled = self._settle(share_of_batch, FROM_AFAR, afresh=True)
             self.tally.histories.append(self._scores(settled.history))
             self.alive += int(settled.value.isfinite().sum())
             self._take(settled, first)
-            self._tell("starts", min(first + batch, starts) / starts, starts)
+            self._tell("starts", last / starts, last)
         if not self.alive:
             raise RuntimeError(f"none of the {starts} starts stayed healthy: scores or gradients were not finite")
 
@@ -221,8 +225,7 @@ class _Search:
         settings = BarrierSettings(STEPS + STEPS_PER_LENS * self.exact.count, (pressure, LAST))
         order = torch.rand(share.shape[1] - self.variables.focus_start, generator=self.generator)
         share = refocus(self.question, self.variables, share, order, afresh)
-        # The first answer is waited for; whatever comes after it is not.
-        return settle(self.seer, share, settings, lambda: self.incumbent is None or not self._late())
+        return settle(self.seer, share, settings, lambda: not self._late(FIRST_ANSWER if self.incumbent is None else 0.0))
 
     def _take(self, settled: Settled, first: int | None) -> None:
         """Add what a wave found, and polish the best of it if that may be the best of all."""
@@ -262,9 +265,10 @@ class _Search:
     def _scores(self, history: Tensor) -> Tensor:
         return history.exp() if self.seer.scale is None else history * self.seer.scale
 
-    def _late(self) -> bool:
-        self.out_of_time |= monotonic() > self.end
-        return self.out_of_time
+    def _late(self, grace: float = 0.0) -> bool:
+        late = monotonic() > self.end + grace
+        self.out_of_time |= late
+        return late
 
     def _tell(self, stage: str, done: float, starts: int) -> None:
         feasible = self.incumbent is not None and self.incumbent.certificate.feasible

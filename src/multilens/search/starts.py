@@ -1,5 +1,7 @@
 """Where the search begins: many layouts spread evenly over all that the question allows."""
 
+from math import pi
+
 import torch
 from jaxtyping import Float
 from torch import Tensor
@@ -7,6 +9,7 @@ from torch.quasirandom import SobolEngine
 
 from multilens.back import Back
 from multilens.constraints import room_at
+from multilens.geometry.pairs import pair_indices
 from multilens.layout import Layout
 from multilens.problem import Question
 from multilens.search.variables import Variables
@@ -17,6 +20,8 @@ PLACES_TRIED = 4096
 
 def scattered_starts(question: Question, variables: Variables, count: int, seed: int) -> Float[Tensor, "count d"]:
     """Give vectors from a scrambled Sobol sequence, every lens that is free to go anywhere where its smallest body fits.
+
+    In every second one two lenses stand as far apart as the back allows in some direction: the widest pair decides stereo.
 
     A longer list begins with a shorter one of the same seed: what start i is does not depend on how many there are.
 
@@ -29,7 +34,7 @@ def scattered_starts(question: Question, variables: Variables, count: int, seed:
     Returns:
         Vectors, in the variables' own units.
     """
-    draws = _sobol(len(variables) + len(question.lenses), count, seed).to(variables.upper)
+    draws = _sobol(len(variables) + len(question.lenses) + 2, count, seed).to(variables.upper)
     layout = variables.layout(draws[:, : len(variables)] * variables.upper)
     position = layout.position.clone()
     tried, room = tried_places(question.back, seed)
@@ -38,7 +43,25 @@ def scattered_starts(question: Question, variables: Variables, count: int, seed:
         if lens.position is None and len(places):
             chosen = (draws[:, len(variables) + index] * len(places)).long().clamp(max=len(places) - 1)
             position[:, index] = places.to(position)[chosen]
+    _part_two(question, position[1::2], draws[1::2, -2:], tried.to(position), room.to(position))
     return variables.vector(Layout(position, layout.aperture_radius, layout.focus))
+
+
+def _part_two(question: Question, position: Tensor, draws: Tensor, tried: Tensor, room: Tensor) -> None:
+    """Move two lenses of each layout, in place, to the first and the last place along a direction; both are drawn."""
+    free = torch.tensor([i for i, lens in enumerate(question.lenses) if lens.position is None], dtype=torch.long)
+    if len(free) < 2 or not len(position):
+        return
+    pairs = free[pair_indices(len(free))]
+    chosen = pairs[:, (draws[:, 0] * pairs.shape[1]).long().clamp(max=pairs.shape[1] - 1)]
+    angle = pi * draws[:, 1:]
+    along = torch.cat([angle.cos(), angle.sin()], dim=-1) @ tried.T
+    body = torch.tensor([lens.least_body_radius for lens in question.lenses], dtype=room.dtype)
+    layout = torch.arange(len(position))
+    for lens, way in ((chosen[0], 1.0), (chosen[1], -1.0)):
+        fits = room >= body[lens].unsqueeze(-1)
+        place = tried[(way * along).masked_fill(~fits, -torch.inf).argmax(-1)]
+        position[layout, lens] = place.where(fits.any(-1, keepdim=True), position[layout, lens])
 
 
 def tried_places(back: Back, seed: int) -> tuple[Float[Tensor, "p 2"], Float[Tensor, " p"]]:

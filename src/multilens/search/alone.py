@@ -1,0 +1,126 @@
+"""One layout at a time, in NumPy: score and limits with their gradients, as the polish asks for them some hundred times."""
+
+import numpy as np
+import torch
+from jaxtyping import Float
+
+from multilens.problem import Problem, Question
+from multilens.search.limits import Limits
+from multilens.search.variables import Variables
+
+MOST_EDGES_WATCHED = 12
+"""Around each lens, those that leave it least: a disc rarely touches more than three, and all would slow every step."""
+
+MOST_PAIRS_WATCHED = 4
+"""Pairs for each lens, those with the least room: few of all pairs are ever close."""
+
+NANOMETRE = 1e-6
+"""mm; the least baseline that is reckoned with."""
+
+ValueAndGradient = tuple[Float[np.ndarray, " m"], Float[np.ndarray, "m d"]]
+
+
+class Alone:
+    """A question as functions of one vector.
+
+    Args:
+        question: what is asked.
+        variables: in float64, on the processor.
+    """
+
+    def __init__(self, question: Question, variables: Variables) -> None:
+        self.question, self.variables, self.n = question, variables, variables.count
+        self.limits = Limits(question)
+        self.free, self.stretch = variables.free.numpy(), variables.stretch.numpy()
+        self.low, self.start = variables.low.numpy(), variables.focus_start
+        self.columns = np.arange(self.n)
+        self.terms = self._by_autograd
+        if isinstance(question, Problem) and question.is_envelope:
+            self.terms = self._over_depths
+            known = question.closed_form(torch.device("cpu"))
+            self.noise = known.noise.numpy() if len(known.first) else np.empty(0)
+            self.lens, self.tier = known.lens.numpy(), known.tier.numpy()
+            self.slope_times_radius = known.slope_times_radius.numpy()
+            self.focus_of = variables.tier_of.numpy()[self.lens, self.tier]
+            self.depths = question.depths.numpy()
+            self.weights = question.weights.numpy() * self.depths**2
+
+    def room(self, x: Float[np.ndarray, " d"]) -> ValueAndGradient:
+        """Give the room left at the pairs and edges that are near, mm, and its gradient."""
+        n, lens = self.n, self.columns
+        position, radius, _ = self._parts(x)
+        apart, parting, inside, inward = self.limits.at(position, radius)
+        first, second = self.limits.first, self.limits.second
+        if len(apart) > (watched := MOST_PAIRS_WATCHED * n):
+            # In the order of pairs and edges, so that a limit keeps its place from one step to the next.
+            near = np.sort(np.argpartition(apart, watched)[:watched])
+            apart, parting, first, second = apart[near], parting[near], first[near], second[near]
+        if inside.shape[1] > MOST_EDGES_WATCHED:
+            near = np.sort(np.argpartition(inside, MOST_EDGES_WATCHED, axis=1)[:, :MOST_EDGES_WATCHED], axis=1)
+            inside, inward = inside[lens[:, None], near], inward[lens[:, None], near]
+        pair = np.arange(len(apart))
+        between = np.zeros((len(apart), len(self.low)))
+        at_edges = np.zeros((*inside.shape, len(self.low)))
+        for axis in (0, 1):
+            between[pair, 2 * first + axis] = parting[:, axis]
+            between[pair, 2 * second + axis] = -parting[:, axis]
+            at_edges[lens, :, 2 * lens + axis] = inward[..., axis]
+        between[pair, 2 * n + first] = between[pair, 2 * n + second] = -1
+        at_edges[lens, :, 2 * n + lens] = -1
+        # Positions and radii are linear in x, and no limit sees the foci.
+        gradient = np.concatenate([between, at_edges.reshape(-1, len(self.low))])
+        return np.concatenate([apart, inside.ravel()]), (gradient * self.stretch)[:, self.free]
+
+    def _by_autograd(self, x: Float[np.ndarray, " d"]) -> ValueAndGradient:
+        """Give the terms of any question and their gradients."""
+        point = torch.from_numpy(x.copy()).requires_grad_()
+        values = self.question.terms(self.variables.layout(point))
+        rows = [torch.autograd.grad(value, point, retain_graph=True)[0] for value in values]
+        return values.detach().numpy(), torch.stack(rows).numpy()
+
+    def _over_depths(self, x: Float[np.ndarray, " d"]) -> ValueAndGradient:
+        """Give the score of the thesis' cues and its gradient by plain sums over the depths.
+
+        Divided by the depth, stereo of the best pair is gain Z and defocus slope abs(Z - Zf): the least of them counts.
+        """
+        position, radius, foci = self._parts(x)
+        gradient, n, depths = np.zeros(len(self.low)), self.n, self.depths
+        gain, best = np.inf, 0
+        first, second = self.limits.first, self.limits.second
+        away, distance = np.empty(0), np.empty(0)
+        if len(self.noise):
+            away = position[first] - position[second]
+            distance = np.maximum(np.sqrt((away**2).sum(-1)), NANOMETRE)
+            best = (self.noise / distance).argmin()
+            gain = self.noise[best] / distance[best]
+        score, by_stereo = 0.0, np.ones(len(depths), dtype=bool)
+        if len(self.lens):
+            slope = self.slope_times_radius / radius[self.lens]
+            miss = depths - foci[self.focus_of, None]
+            curves = np.abs(miss) * slope[:, None]
+            winner = curves.argmin(0)
+            every = np.arange(len(depths))
+            by_stereo = gain * depths < curves[winner, every]
+            missed = miss[winner, every]
+            weight = np.where(by_stereo, 0.0, self.weights)
+            count = len(slope)
+            drift = np.bincount(winner, weight * missed, count)
+            spread = np.bincount(winner, weight * missed**2, count)
+            score += (slope**2 * spread).sum()
+            np.add.at(gradient, 2 * n + self.lens, -2 * slope**2 * spread / radius[self.lens])
+            np.add.at(gradient, self.start + self.focus_of, -2 * slope**2 * drift * foci[self.focus_of])
+        if by_stereo.any() and np.isfinite(gain):
+            worth = (self.weights * depths**2)[by_stereo].sum()
+            score += gain**2 * worth
+            pull = -2 * gain**2 * worth / distance[best] ** 2 * away[best]
+            gradient[2 * first[best] : 2 * first[best] + 2] += pull
+            gradient[2 * second[best] : 2 * second[best] + 2] -= pull
+        return np.array([score]), (gradient * self.stretch)[None, self.free]
+
+    def _parts(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Give positions [n, 2], radii [n] and foci, all of all lenses in a row, mm."""
+        share = np.zeros(len(self.low))
+        share[self.free] = x
+        linear = self.low[: self.start] + share[: self.start] * self.stretch[: self.start]
+        foci = self.low[self.start :] * np.exp(share[self.start :] * self.stretch[self.start :])
+        return linear[: 2 * self.n].reshape(-1, 2), linear[2 * self.n :], foci
