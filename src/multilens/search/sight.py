@@ -104,20 +104,14 @@ class Seer:
         """
         value, slope = self._value_and_slope(share, width)
         with torch.no_grad():
-            room = self.limits(self.variables.layout_of(share))
+            room = self.limits(self.variables.layout_of(share)).to(share.dtype)
             pull = pad(room.parting, (0, 1), value=-1.0)
             push = pad(-room.parting, (0, 1), value=-1.0)
             edge = pad(room.inward, (0, 1), value=-1.0)
             every = torch.cat([room.apart, room.inside.flatten(-2)], dim=-1) / self.unit
-            return Sight(
-                share,
-                value,
-                slope,
-                every,
-                pull * self.first_span,
-                push * self.second_span,
-                edge * self.span.unsqueeze(-2),
-            )
+            limits = (every, pull * self.first_span, push * self.second_span, edge * self.span.unsqueeze(-2))
+            # Room is told in double precision; the search goes on in its own.
+            return Sight(share, value, slope, *(each.to(share.dtype) for each in limits))
 
     def _value_and_slope(self, share: Tensor, width: float) -> tuple[Float[Tensor, " b"], Float[Tensor, "b v"]]:
         if self.closed_form is not None and self.scale is None:
