@@ -49,9 +49,9 @@ class ClosedForm:
         position, radius, focus = layout.position.double(), layout.aperture_radius.double(), layout.focus.double()
         on_radius, on_focus = (radius, focus[..., 0]) if self.plain else self._picked(radius, focus)
         slope = self.slope_times_radius / on_radius
+        away = position[..., self.first, :] - position[..., self.second, :]
+        distance = away.norm(dim=-1).clamp_(min=NANOMETRE)
         if len(self.first):
-            away = position[..., self.first, :] - position[..., self.second, :]
-            distance = away.norm(dim=-1).clamp_(min=NANOMETRE)
             gain, best = (self.noise / distance).min(-1)
         else:
             gain, best = position.new_full(position.shape[:-2], inf), None

@@ -5,10 +5,11 @@ from math import isclose, nan, sqrt
 from pathlib import Path
 from typing import Any
 
+from multilens.bounds.bound import Bound
 from multilens.certificate import Certificate, certify
 from multilens.convergence import Convergence
 from multilens.documents import document, document_content, read_text
-from multilens.fields import choice, number, record
+from multilens.fields import choice, number, record, text, whole_number
 from multilens.geometry.pairs import pair_distance, pair_indices
 from multilens.layout import Layout
 from multilens.problem import Problem, Question
@@ -31,6 +32,9 @@ COMPLETE, OUT_OF_TIME, INFEASIBLE = "complete", "time limit", "infeasible"
 SCHEMA, SCHEMA_VERSION = "multilens.design", 1
 UNITS = {"length": "mm", "score": "mm^2", "rmse": "mm", "time": "s"}
 
+ROUNDING = 1e-9
+"""Part of a score by which a lower bound may lie above it, where both are as good as they can be."""
+
 SAME = 1e-12
 """Largest relative difference between a stored score and the one that its layout has: a few roundings, no more."""
 
@@ -47,6 +51,7 @@ class Design:
         certificate: every constraint, checked exactly.
         convergence: of the starts; None for a layout that was not searched for.
         origin: what made it; None for a layout that was not searched for.
+        bound: below which no feasible layout of this problem scores, or why none is known; None where none was sought.
     """
 
     problem: Question
@@ -56,6 +61,7 @@ class Design:
     certificate: Certificate
     convergence: Convergence | None = None
     origin: Origin | None = None
+    bound: Bound | None = None
 
     @property
     def feasible(self) -> bool:
@@ -71,6 +77,14 @@ class Design:
     def rmse(self) -> float:
         """Root of the score: the root-mean-square error of depth, mm; NaN if infeasible or the score is negative."""
         return sqrt(self.score) if self.score >= 0 else nan
+
+    @property
+    def gap(self) -> float:
+        """How far from the best possible the score may be, as a part of it: 1 - bound / score, 0 at best; NaN if unknown."""
+        if self.bound is None or self.bound.value is None or not self.feasible:
+            return nan
+        # Bound and score are rounded apart: at the very best they may seem to cross.
+        return max(0.0, 1 - self.bound.value / self.score) if self.score > 0 else 0.0
 
     @property
     def f_numbers(self) -> tuple[float, ...]:
@@ -151,10 +165,11 @@ class Design:
             "certificate": certificate_record(self.certificate),
             "origin": None if self.origin is None else origin_record(self.origin),
             "convergence": None if self.convergence is None else convergence_record(self.convergence),
+            "bound": None if self.bound is None else _bound_record(self.bound),
         }
-        text = document(SCHEMA, SCHEMA_VERSION, content)
-        Design.from_json(text)
-        return text
+        written = document(SCHEMA, SCHEMA_VERSION, content)
+        Design.from_json(written)
+        return written
 
     @classmethod
     def from_json(cls, text: str) -> "Design":
@@ -164,7 +179,18 @@ class Design:
             ValueError: as for `load`.
         """
         content = document_content(text, SCHEMA, SCHEMA_VERSION)
-        keys = ("units", "status", "score", "rmse", "layout", "problem", "certificate", "origin", "convergence")
+        keys = (
+            "units",
+            "status",
+            "score",
+            "rmse",
+            "layout",
+            "problem",
+            "certificate",
+            "origin",
+            "convergence",
+            "bound",
+        )
         fields = record(content, "design", keys)
         if fields["units"] != UNITS:
             raise ValueError(f"units must be {UNITS}, got {fields['units']!r:.80}")
@@ -180,6 +206,7 @@ class Design:
             certificate,
             None if fields["convergence"] is None else read_convergence(fields["convergence"], "convergence"),
             None if fields["origin"] is None else read_origin(fields["origin"], "origin"),
+            None if fields["bound"] is None else _read_bound(fields["bound"], "bound"),
         )
         _refuse_unless_it_holds(design, fields)
         return design
@@ -217,10 +244,29 @@ class Design:
         if self.longest_baseline is not None:
             baseline, (first, second) = self.longest_baseline
             facts["longest baseline"] = f"{baseline:.3f} mm, lens {first + 1} to lens {second + 1}"
+        if self.bound is not None:
+            facts["lower bound"] = self._bound_in_words(self.bound)
         tightest = self.certificate.tightest
         facts["tightest clearance"] = f"{tightest.room:.3g} mm, {tightest.what}"
         wide = max(map(len, facts))
         return "\n".join([*table, "", *(f"{name:<{wide}}  {fact}" for name, fact in facts.items())])
+
+    def _bound_in_words(self, bound: Bound) -> str:
+        if bound.value is None:
+            return bound.reason
+        return f"no layout can have an RMSE below {sqrt(bound.value):.6g} mm; gap {100 * self.gap:.2g} % of the score"
+
+
+def _bound_record(bound: Bound) -> dict[str, Any]:
+    return {"value": bound.value, "reason": bound.reason, "root": bound.root, "boxes": bound.boxes}
+
+
+def _read_bound(value: object, name: str) -> Bound:
+    """Read what `_bound_record` gives. The number is not proved anew: `lower_bound` does that, and takes a second or two."""
+    fields = record(value, name, ("value", "reason", "root", "boxes"))
+    proved, root = (None if fields[key] is None else number(fields[key], f"{name}.{key}") for key in ("value", "root"))
+    reason = text(fields["reason"], f"{name}.reason")
+    return Bound(proved, reason, root, whole_number(fields["boxes"], f"{name}.boxes"))
 
 
 def _refuse_unless_it_holds(design: Design, fields: dict[str, Any]) -> None:
@@ -232,6 +278,9 @@ def _refuse_unless_it_holds(design: Design, fields: dict[str, Any]) -> None:
         stored = number(fields[name], name)
         if not isclose(stored, actual, rel_tol=SAME):
             raise ValueError(f"{name} must be the layout's, {actual!r}, got {stored!r}")
+    bound = design.bound
+    if bound is not None and bound.value is not None and not 0 <= bound.value <= design.score * (1 + ROUNDING):
+        raise ValueError(f"bound.value must be from 0 to the score, {design.score!r}, got {bound.value!r}")
     stored = read_certificate(fields["certificate"], "certificate").clearances
     actual = design.certificate.clearances
     if [(c.what, c.kept) for c in stored] != [(c.what, c.kept) for c in actual]:

@@ -18,6 +18,7 @@ import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from io import StringIO
+from math import isnan
 from pathlib import Path
 from typing import Any
 
@@ -44,6 +45,7 @@ class SweepRow:
         lens_count: how many lenses; None without a design, like all that follows.
         score: mm^2.
         rmse: mm.
+        gap: to the lower bound, as a part of the score; None where no bound is known.
         longest_baseline: mm; None for a single lens.
     """
 
@@ -54,6 +56,7 @@ class SweepRow:
     lens_count: int | None = None
     score: float | None = None
     rmse: float | None = None
+    gap: float | None = None
     longest_baseline: float | None = None
 
 
@@ -205,7 +208,9 @@ def _row(folder: Path) -> SweepRow:
             design = Design.load(folder / DESIGN)
             longest = design.longest_baseline
             baseline = None if longest is None else longest[0]
-            return SweepRow(job, overrides, design.status, "", design.layout.count, design.score, design.rmse, baseline)
+            gap = None if isnan(design.gap) else design.gap
+            found = design.layout.count, design.score, design.rmse, gap, baseline
+            return SweepRow(job, overrides, design.status, "", *found)
         if (folder / FAILURE).exists():
             failure = record(_json(folder / FAILURE), FAILURE, ("status", "reason"))
             return SweepRow(job, overrides, text(failure["status"], "status"), text(failure["reason"], "reason"))
@@ -232,7 +237,7 @@ def _cells(rows: Sequence[SweepRow]) -> list[list[Any]]:
     """Give the head and the rows, with a column for every key that was swept."""
     settings = [{key: value for key, _, value in (each.partition("=") for each in row.overrides)} for row in rows]
     keys = list(dict.fromkeys(key for setting in settings for key in setting))
-    head = ["job", *keys, "lens_count", "status", "score_mm2", "rmse_mm", "longest_baseline_mm", "reason"]
+    head = ["job", *keys, "lens_count", "status", "score_mm2", "rmse_mm", "gap_to_bound", "longest_baseline_mm", "reason"]
     return [head] + [
         [
             row.job,
@@ -241,6 +246,7 @@ def _cells(rows: Sequence[SweepRow]) -> list[list[Any]]:
             row.status,
             row.score,
             row.rmse,
+            row.gap,
             row.longest_baseline,
             row.reason,
         ]

@@ -23,6 +23,7 @@ MOST_KEEP_OUTS = 64
 MOST_POINTS = 10_000
 MOST_DEPTHS = 4096
 MOST_STARTS = 65_536
+MOST_BOXES = 10_000_000
 NAME = re.compile(r"[A-Za-z0-9._-]{1,100}")
 KEEP_OUT_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9 ._-]{0,99}")
 
@@ -64,6 +65,7 @@ def check(config: Config) -> None:
         raise RefusedError(f"cues.names must be at least one of stereo and defocus, each once, got {given}")
     _refuse_unless_count("search.starts", config.search.starts, 1, MOST_STARTS)
     _refuse_unless_count("search.patience", config.search.patience, 0, MOST_STARTS)
+    _refuse_unless_count("search.proof", config.search.proof, 0, MOST_BOXES)
     _refuse_unless_count("search.seed", config.search.seed, 0, 2**31 - 1)
     limit = config.search.time_limit
     if limit is not None and not (isfinite(limit) and limit > 0):

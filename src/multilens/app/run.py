@@ -114,6 +114,7 @@ def _search(config: DictConfig, log: list[str], visible: bool) -> "Design":
                 seed=asked.seed,
                 time_limit=asked.time_limit,
                 patience=asked.patience,
+                proof=asked.proof,
                 penalty=penalties[given.penalty.name],
                 listener=listener,
             )

@@ -168,12 +168,14 @@ class SearchConfig:
     Args:
         starts: how many descend.
         patience: waves of variations without progress after which the search ends.
+        proof: boxes of apertures that the lower bound may look at; 0 seeks none.
         seed: of the starts.
         time_limit: s; null for none.
     """
 
     starts: int = MISSING
     patience: int = MISSING
+    proof: int = MISSING
     seed: int = 0
     time_limit: float | None = None
 

@@ -9,6 +9,7 @@ from time import monotonic
 import torch
 from torch import Tensor
 
+from multilens.bounds.bound import lower_bound
 from multilens.convergence import Convergence
 from multilens.design import COMPLETE, INFEASIBLE, OUT_OF_TIME, Design, Origin
 from multilens.layout import Layout
@@ -68,6 +69,7 @@ def solve(
     seed: int = 0,
     time_limit: float | None = None,
     patience: int = 8,
+    proof: int = 4000,
     penalty: Callable[[Question], Price] = distance_penalty,
     batch: int = BATCH,
     device: str | torch.device = "cpu",
@@ -83,6 +85,8 @@ def solve(
             time ran out.
         time_limit: after which the best so far is given, s; None waits to the end.
         patience: waves of variations without progress after which the search ends, >= 0.
+        proof: boxes of apertures that the lower bound may look at once the search is over, >= 0; 0 seeks none. Time and time
+            limit do not count it: a second or two.
         penalty: by what overlapping starts are parted: `distance_penalty` or `area_penalty`.
         batch: layouts computed together, >= 1: more need more memory, and make the most of a GPU.
         device: where the waves are computed; the polish and the proof run on the processor.
@@ -96,7 +100,12 @@ def solve(
         ValueError: a number is out of its range.
         RuntimeError: no start stayed healthy: every one met a score or a gradient that is not finite.
     """
-    for name, number, least in (("starts", starts, 1), ("patience", patience, 0), ("batch", batch, 1)):
+    for name, number, least in (
+        ("starts", starts, 1),
+        ("patience", patience, 0),
+        ("proof", proof, 0),
+        ("batch", batch, 1),
+    ):
         if number < least:
             raise ValueError(f"{name} must be >= {least}, got {number}")
     if time_limit is not None and not time_limit > 0:
@@ -118,7 +127,8 @@ def solve(
     convergence = search.convergence
     if best.certificate.feasible:
         status = OUT_OF_TIME if search.out_of_time else COMPLETE
-        return Design(problem, best.layout, status, "", best.certificate, convergence, origin)
+        bound = lower_bound(problem, proof, best.score) if proof else None
+        return Design(problem, best.layout, status, "", best.certificate, convergence, origin, bound)
     tightest = best.certificate.tightest
     searched = f" in {time_limit:g} s" if search.out_of_time else ""
     reason = f"no feasible layout found{searched}: at best {tightest.what} lacks {-tightest.room:.4g} mm"
@@ -225,7 +235,9 @@ class _Search:
         settings = BarrierSettings(STEPS + STEPS_PER_LENS * self.exact.count, (pressure, LAST))
         order = torch.rand(share.shape[1] - self.variables.focus_start, generator=self.generator)
         share = refocus(self.question, self.variables, share, order, afresh)
-        return settle(self.seer, share, settings, lambda: not self._late(FIRST_ANSWER if self.incumbent is None else 0.0))
+        return settle(
+            self.seer, share, settings, lambda: not self._late(FIRST_ANSWER if self.incumbent is None else 0.0)
+        )
 
     def _take(self, settled: Settled, first: int | None) -> None:
         """Add what a wave found, and polish the best of it if that may be the best of all."""
