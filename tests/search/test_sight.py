@@ -112,21 +112,31 @@ def test_where_takes_each_layout_from_one_of_two(crowded: ml.Problem) -> None:
         assert part[1].equal(getattr(other, name)[1]), name
 
 
-def test_of_a_positive_score_the_logarithm_is_minimised() -> None:
-    lens = ml.Lens(1.0, (1.0, 2.0))
-    problem = ml.ScoreProblem(ml.Back.rectangle(10, 10), [lens], lambda layout: layout.aperture_radius[..., 0] ** 3)
-    seer, share = shares(problem)
-    radius = seer.variables.layout_of(share).aperture_radius[:, 0]
-    torch.testing.assert_close(seer.look(share, WIDTH).value, 3 * radius.log(), rtol=1e-12, atol=0)
+@pytest.fixture
+def one_depth() -> ml.Problem:
+    lens = ml.Lens(5.0, (1.0, 2.0), focus=(200.0, 900.0))
+    return ml.Problem(ml.Back.rectangle(10, 10), [lens], [200.0], cues=[ml.LensDefocus()])
 
 
-def test_a_score_that_falls_to_zero_keeps_a_finite_logarithm() -> None:
-    seer, share = shares(
-        ml.ScoreProblem(
-            ml.Back.rectangle(10, 10), [ml.Lens(1.0, (1.0, 2.0))], lambda layout: layout.position[..., 0, 0]
-        )
-    )
+def test_of_a_squared_error_the_logarithm_is_minimised(one_depth: ml.Problem) -> None:
+    seer, share = shares(one_depth)
+    layout = seer.variables.layout_of(share)
+    error = 200 * (layout.focus - 200).flatten() / (2 * layout.aperture_radius.flatten() * 5)
+    torch.testing.assert_close(seer.look(share, WIDTH).value, 2 * error.log(), rtol=1e-12, atol=0)
+
+
+def test_an_error_that_falls_to_zero_keeps_a_finite_logarithm(one_depth: ml.Problem) -> None:
+    seer, share = shares(one_depth)
     assert seer.look(torch.zeros_like(share), WIDTH).value.tolist() == [log(1e-300)] * 4
+
+
+def test_a_score_of_ones_own_may_change_its_sign() -> None:
+    lens = ml.Lens(1.0, (1.0, 2.0))
+    problem = ml.ScoreProblem(ml.Back.rectangle(10, 10), [lens], lambda layout: layout.position[..., 0, 0] + 0.0)
+    seer, share = shares(problem)
+    below = share.index_fill(1, torch.tensor([0]), -0.3)
+    assert (seer.look(below, WIDTH).value < 0).all()
+    assert (seer.look(below, WIDTH).slope[:, 0] > 0).all()
 
 
 def test_terms_count_in_units_of_their_size(packing: ml.ScoreProblem) -> None:

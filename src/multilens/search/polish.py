@@ -9,7 +9,7 @@ import torch
 from jaxtyping import Float
 from torch import Tensor
 
-from multilens.problem import Question
+from multilens.problem import Problem, Question
 from multilens.search.alone import Alone
 from multilens.search.variables import Variables
 
@@ -61,8 +61,8 @@ def polish(
     size = question.back.size
     alone = Alone(question, variables)
     first, _ = alone.terms(x.numpy())
-    # Of a positive score the logarithm is minimised: the tolerance is then a part of it.
-    one = len(first) == 1 and first[0] > 0
+    # Of a squared error the logarithm is minimised: the tolerance is then a part of it. A score of one's own may be negative.
+    one = isinstance(question, Problem) and first[0] > 0
     scale = max(float(np.abs(first).max()), float(np.finfo(float).tiny))
 
     def terms(vector: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -81,7 +81,7 @@ class Seer:
         """Where each number of each lens' block with each lens stands in a flat matrix."""
 
     def calibrate(self, share: Float[Tensor, "b v"]) -> None:
-        """Choose once what is minimised: the logarithm of a score that is a positive number, or terms in units of their size.
+        """Choose once what is minimised: the logarithm of a squared error, or terms in units of their size.
 
         Args:
             share: vectors whose terms are typical.
@@ -91,7 +91,8 @@ class Seer:
         with torch.no_grad():
             terms = self.question.terms(self.variables.layout_of(share))
         self.calibrated = True
-        if terms.shape[-1] > 1 or not (terms > 0).all():
+        # A score of one's own may become negative on the way, whatever it is here.
+        if not isinstance(self.question, Problem) or not (terms > 0).all():
             scale = terms.abs().amax(-1).nanmedian().item()
             self.scale = scale if isfinite(scale) and scale > 0 else 1.0
 
