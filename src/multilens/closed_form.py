@@ -73,6 +73,15 @@ class ClosedForm:
         spread[..., self.lens, self.tier] = by_focus
         return value, (by_position, torch.zeros_like(radius).index_add_(-1, self.lens, by_radius), spread)
 
+    def gain_and_slope(self, layout: Layout) -> tuple[Float[Tensor, "*batch"], Float[Tensor, "*batch k"]]:
+        """Give the error of the best pair over Z^2, infinite without pairs, and h of every V, its error over Z abs(Z - Zf)."""
+        position, radius = layout.position.double(), layout.aperture_radius.double()
+        slope = self.slope_times_radius / (radius if self.plain else radius[..., self.lens])
+        if not len(self.first):
+            return position.new_full(position.shape[:-2], inf), slope
+        distance = (position[..., self.first, :] - position[..., self.second, :]).norm(dim=-1)
+        return (self.noise / distance.clamp(min=NANOMETRE)).amin(-1), slope
+
     def _picked(self, radius: Tensor, focus: Tensor) -> tuple[Tensor, Tensor]:
         return radius[..., self.lens], focus[..., self.lens, self.tier]
 

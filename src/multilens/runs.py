@@ -237,7 +237,17 @@ def _cells(rows: Sequence[SweepRow]) -> list[list[Any]]:
     """Give the head and the rows, with a column for every key that was swept."""
     settings = [{key: value for key, _, value in (each.partition("=") for each in row.overrides)} for row in rows]
     keys = list(dict.fromkeys(key for setting in settings for key in setting))
-    head = ["job", *keys, "lens_count", "status", "score_mm2", "rmse_mm", "gap_to_bound", "longest_baseline_mm", "reason"]
+    head = [
+        "job",
+        *keys,
+        "lens_count",
+        "status",
+        "score_mm2",
+        "rmse_mm",
+        "gap_to_bound",
+        "longest_baseline_mm",
+        "reason",
+    ]
     return [head] + [
         [
             row.job,

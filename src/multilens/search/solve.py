@@ -17,13 +17,13 @@ from multilens.penalty import Price, distance_penalty
 from multilens.problem import Question
 from multilens.search.barrier import BarrierSettings, Settled, settle
 from multilens.search.fit import why_nothing_fits
+from multilens.search.foci import Foci
 from multilens.search.legalise import legalise
 from multilens.search.limits import Limits
 from multilens.search.parting import part
 from multilens.search.polish import OutOfTimeError, polish
 from multilens.search.pool import Candidate, Elite
 from multilens.search.progress import Listener, Progress
-from multilens.search.refocus import refocus
 from multilens.search.sight import Seer
 from multilens.search.starts import scattered_starts, tried_places
 from multilens.search.threads import one_thread
@@ -163,6 +163,7 @@ class _Search:
         self.seer = Seer(question, variables)
         self.price = penalty(question)
         self.generator = torch.Generator().manual_seed(seed)
+        self.foci = Foci(question, variables, self.generator)
         self.elite = Elite(MOST_ELITE)
         self.incumbent: Candidate | None = None
         self.best_value = inf
@@ -233,8 +234,7 @@ class _Search:
 
     def _settle(self, share: Tensor, pressure: float, afresh: bool) -> Settled:
         settings = BarrierSettings(STEPS + STEPS_PER_LENS * self.exact.count, (pressure, LAST))
-        order = torch.rand(share.shape[1] - self.variables.focus_start, generator=self.generator)
-        share = refocus(self.question, self.variables, share, order, afresh)
+        share = self.foci.afresh(share) if afresh else self.foci.improved(share)
         return settle(
             self.seer, share, settings, lambda: not self._late(FIRST_ANSWER if self.incumbent is None else 0.0)
         )
@@ -254,7 +254,8 @@ class _Search:
         if any(abs(float(merit[at]) - value) < ALIKE for value in self.polished_values):
             return
         self.polished_values.append(float(merit[at]))
-        layout = self.exact.layout_of(settled.share[at].cpu().double())
+        chosen = self.foci.best_for(settled.share[at]).cpu().double()
+        layout = self.exact.layout_of(chosen)
         claimed = self._claim(tighten(self.limits, layout))
         if self._late():
             return

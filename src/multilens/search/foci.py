@@ -1,0 +1,89 @@
+"""The foci of a wave: shared out by dynamic programming or one by one, and a last look at those of the best."""
+
+import torch
+from jaxtyping import Float
+from torch import Generator, Tensor
+
+from multilens.cues import LensDefocus
+from multilens.problem import Problem, Question
+from multilens.search.refocus import refocus
+from multilens.search.stretches import Stretches
+from multilens.search.variables import Variables
+
+DEALT = 7
+"""Ways to deal the shared-out foci to unequal lenses that are tried for the best layout, beside its own order."""
+
+
+class Foci:
+    """Chooses foci for layouts.
+
+    Args:
+        question: what is asked.
+        variables: how a vector becomes a layout.
+        generator: of random numbers, on the processor.
+    """
+
+    def __init__(self, question: Question, variables: Variables, generator: Generator) -> None:
+        self.question, self.variables, self.generator = question, variables, generator
+        device = variables.low.device
+        self.columns = variables.free[variables.free >= variables.focus_start]
+        self.stretches: Stretches | None = None
+        if isinstance(question, Problem) and len(self.columns) and question.is_envelope and _has_defocus(question):
+            self.closed_form = question.closed_form(device)
+            self.stretches = Stretches(question.depths.to(device), question.weights.to(device))
+
+    def afresh(self, share: Float[Tensor, "b v"]) -> Float[Tensor, "b v"]:
+        """Give the layouts with foci that do not depend on those they have."""
+        if self.stretches is None:
+            return self._one_by_one(share, afresh=True)
+        share = share.clone()
+        # Shared out as if apertures were as wide as they may be: that is where most of them go.
+        wide = share[::2].clone()
+        radii = slice(2 * self.variables.count, self.variables.focus_start)
+        wide[:, radii] = 1.0
+        share[::2, self.columns] = self._shared_out(wide, self._any_order(len(wide)))[:, self.columns]
+        if len(share) > 1:
+            share[1::2] = self._one_by_one(share[1::2], afresh=True)
+        return share
+
+    def improved(self, share: Float[Tensor, "b v"]) -> Float[Tensor, "b v"]:
+        """Give the layouts with better foci, every fourth of them with foci shared out anew."""
+        if self.stretches is not None:
+            share = share.clone()
+            share[::4] = self._shared_out(share[::4], self._any_order(len(share[::4])))
+        return self._one_by_one(share, afresh=False)
+
+    def best_for(self, share: Float[Tensor, " v"]) -> Float[Tensor, " v"]:
+        """Give one layout with the best foci of several ways to choose them; never worse than it was."""
+        if self.stretches is None:
+            return share
+        own = share[self.columns].argsort().argsort().unsqueeze(0)
+        orders = torch.cat([own, self._any_order(DEALT)])
+        dealt = self._shared_out(share.expand(1 + DEALT, -1), orders)
+        tried = torch.cat([share.unsqueeze(0), dealt, self._one_by_one(dealt, afresh=False)])
+        with torch.no_grad():
+            return tried[self.question.terms(self.variables.layout_of(tried)).amax(-1).argmin()]
+
+    def _one_by_one(self, share: Tensor, afresh: bool) -> Tensor:
+        order = torch.rand(len(self.variables.low) - self.variables.focus_start, generator=self.generator)
+        return refocus(self.question, self.variables, share, order, afresh)
+
+    def _any_order(self, count: int) -> Tensor:
+        order = torch.rand(count, len(self.columns), generator=self.generator).argsort(-1)
+        return order.to(self.columns.device)
+
+    def _shared_out(self, share: Tensor, order: Tensor) -> Tensor:
+        """Give the layouts with the best foci for as many apertures of their mean width, dealt out in an order."""
+        assert self.stretches is not None
+        layout = self.variables.layout_of(share)
+        gain, slope = self.closed_form.gain_and_slope(layout)
+        foci = self.stretches.best_foci(gain, 1 / (1 / slope).mean(-1), len(self.columns))
+        near, far = self.variables.low[self.columns], self.variables.high[self.columns]
+        at = (foci.gather(-1, order) / near).log() / (far / near).log()
+        share = share.clone()
+        share[:, self.columns] = at.clamp(0, 1).to(share.dtype)
+        return share
+
+
+def _has_defocus(problem: Problem) -> bool:
+    return any(isinstance(cue, LensDefocus) for cue in problem.cues)
