@@ -1,6 +1,7 @@
 """How many designs a second are valued with their gradient, against the same objective written plainly in eager torch."""
 
 from collections.abc import Callable
+from itertools import product
 from time import perf_counter
 from typing import Any
 
@@ -12,6 +13,9 @@ import multilens as ml
 from benchmark.problems import main_lens, rectangle
 
 BATCH, LENSES, DEPTHS = 256, 8, 128
+
+BATCHES = (256, 1024, 4096)
+"""Designs at once: small batches are mostly what calling torch costs, large ones leave the processor's cache."""
 
 REPEATS = 5
 """Timings of which the median counts; ours and the plain one in turn."""
@@ -69,19 +73,19 @@ def value_and_gradient(score: Callable[[ml.Layout], Tensor], layout: ml.Layout) 
     return torch.autograd.grad(score(layout).sum(), (layout.position, layout.aperture_radius, layout.focus))
 
 
-def speed_table(devices: tuple[str, ...] = ("cpu",), batch: int = BATCH) -> list[list[Any]]:
+def speed_table(devices: tuple[str, ...] = ("cpu",), batches: tuple[int, ...] = BATCHES) -> list[list[Any]]:
     """Give a row for each type and device, head first: designs a second of the library, of plain torch, and their ratio.
 
     Args:
         devices: on which to measure.
-        batch: designs at once.
+        batches: designs at once.
     """
     rows: list[list[Any]] = [
         ["type", "device", "batch", "multilens (designs/s)", "plain eager torch (designs/s)", "ratio"]
     ]
     problem = question()
     for device in devices:
-        for dtype in (torch.float32, torch.float64):
+        for dtype, batch in product((torch.float32, torch.float64), batches):
             layout = random_layouts(problem, batch, {"dtype": dtype, "device": device})
 
             def timed(score: Callable[[ml.Layout], Tensor], at: ml.Layout = layout) -> float:

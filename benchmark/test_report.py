@@ -28,7 +28,7 @@ def made() -> Made:
             runs.append(Run(CASE.name, "CMA-ES", 0, 0.0, (), failure))
         best = {CASE.name: Entry("", 1.0, "somebody", [])}
         bounds = {CASE.name: Bound(bound, "for the test", 0.0)}
-        speed = [["type", "ratio"], ["float32", 25.0]]
+        speed = [["type", "device", "batch", "ratio"], ["float32", "cpu", 256, 25.0]]
         growth = [["grows", "to", "us"], ["outline vertices", 20, 2.0], ["outline vertices", 2000, 2.1]]
         return Results([CASE], runs, best, 10.0, bounds, speed, growth)
 
