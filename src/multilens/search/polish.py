@@ -19,6 +19,10 @@ MARGIN = 1e-10
 LEAST_SCORE = 1e-12
 """Part of the score at the start below which its logarithm is not taken."""
 
+GENTLE = 0.01
+"""Factor of what is minimised. SLSQP takes its curvature for 1 at first: with a small slope its first steps are short, and what
+is nearly there already stays in its basin."""
+
 ValueAndGradient = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
 
 
@@ -71,8 +75,8 @@ def polish(
         values, gradient = alone.terms(vector)
         if one:
             values = np.maximum(values, LEAST_SCORE * scale)
-            return np.log(values / scale), gradient / values[:, None]
-        return values / scale, gradient / scale
+            return GENTLE * np.log(values / scale), GENTLE * gradient / values[:, None]
+        return GENTLE * values / scale, GENTLE * gradient / scale
 
     def room(vector: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         values, gradient = alone.room(vector)
@@ -90,7 +94,7 @@ def polish(
         bounds=[(0.0, high) for high in variables.upper.tolist()] + [(None, None)] * len(more),
         constraints={"type": "ineq", "fun": value, "jac": jacobian},
         method="SLSQP",
-        options={"ftol": tolerance, "maxiter": 300},
+        options={"ftol": GENTLE * tolerance, "maxiter": 300},
     )
     if not np.isfinite(result.x).all():
         return x
