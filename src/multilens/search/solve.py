@@ -276,7 +276,8 @@ class _Search:
         return candidate
 
     def _scores(self, history: Tensor) -> Tensor:
-        return history.exp() if self.seer.scale is None else history * self.seer.scale
+        scores = history.exp() if self.seer.scale is None else history * self.seer.scale
+        return scores.cpu().double()
 
     def _late(self, grace: float = 0.0) -> bool:
         late = monotonic() > self.end + grace

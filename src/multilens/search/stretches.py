@@ -48,14 +48,14 @@ class Stretches:
         ratio = (gain / slope).nan_to_num(posinf=1e6).clamp(max=1e6).square().unsqueeze(-1)
         by_stereo = ratio * self.to_end
         least, steps = by_stereo, []
-        batch = torch.arange(len(gain))
+        batch = torch.arange(len(gain), device=gain.device)
         for _ in range(count):
             ended, begun = (least.unsqueeze(-1) + self.cost).min(1)
             # After the stretch stereo may serve until a later end.
             later, at = (ended - by_stereo).cummin(-1)
             least = later + by_stereo
             steps.append((begun, at))
-        end = torch.full((len(gain),), len(self.to_end) - 1)
+        end = torch.full_like(batch, len(self.to_end) - 1)
         foci = []
         for begun, at in reversed(steps):
             end = at[batch, end]
