@@ -14,6 +14,9 @@ from multilens.layout import Layout
 from multilens.problem import Question
 from multilens.search.variables import Variables
 
+AT_ONCE = 256
+"""Layouts for which all places are looked through together; all at once would ask for memory without end."""
+
 PLACES_TRIED = 4096
 """Spread over the bounding box; a back that fills a tenth of it leaves about 400 to choose from."""
 
@@ -43,7 +46,8 @@ def scattered_starts(question: Question, variables: Variables, count: int, seed:
         if lens.position is None and len(places):
             chosen = (draws[:, len(variables) + index] * len(places)).long().clamp(max=len(places) - 1)
             position[:, index] = places.to(position)[chosen]
-    _part_two(question, position[1::2], draws[1::2, -2:], tried.to(position), room.to(position))
+    for some, drawn in zip(position[1::2].split(AT_ONCE), draws[1::2, -2:].split(AT_ONCE), strict=True):
+        _part_two(question, some, drawn, tried.to(position), room.to(position))
     return variables.vector(Layout(position, layout.aperture_radius, layout.focus))
 
 
