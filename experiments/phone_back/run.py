@@ -29,6 +29,7 @@ def row(case: Case, design: ml.Design) -> dict[str, str]:
         "layout": case.title,
         "lenses": str(case.count),
         "RMSE (mm)": f"{design.rmse:.4f}",
+        "gap to the bound (of the score)": f"{100 * design.gap:.2g} %",
         "longest baseline (mm)": f"{pair_distance(design.layout.position).max().item():.2f}",
         "aperture radii (mm)": " ".join(f"{radius:.2f}" for radius in design.layout.aperture_radius.tolist()),
         "foci (m)": " ".join(f"{focus / 1000:.2f}" for focus in sorted(design.layout.focus.flatten().tolist())),

@@ -36,6 +36,20 @@ def test_more_room_and_more_lenses_are_better(designs: dict[str, ml.Design]) -> 
     assert scores == sorted(scores)
 
 
+def test_the_order_of_the_layouts_is_proved(designs: dict[str, ml.Design]) -> None:
+    # No layout of the worse question can score below its bound, which is above what the better one reaches.
+    for better, worse in (
+        ("island_4", "island_3"),
+        ("island_3", "apple"),
+        ("back_4", "back_3"),
+        ("back_3", "island_4"),
+    ):
+        bound = designs[worse].bound
+        assert bound is not None
+        assert bound.value is not None
+        assert designs[better].score < bound.value
+
+
 def test_baselines_of_apples_places_are_the_published_ones(designs: dict[str, ml.Design]) -> None:
     distances = torch.pdist(designs["apple"].layout.position)
     assert sorted(round(distance, 2) for distance in distances.tolist()) == [19.24, 20.4, 20.4]
