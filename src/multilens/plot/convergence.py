@@ -20,8 +20,9 @@ ROOM_AT_RIGHT = 0.06
 def draw_convergence(ax: Axes, convergence: Convergence, score: float) -> None:
     """Draw the root-mean-square error of every start at every step, those that were polished as marks, and the design's.
 
-    While a start descends its lenses may still overlap or leave the back, so that its error may be less than any that is
-    possible; the axis says so. A score that can be negative is drawn itself, not its root.
+    In the first steps of a start its lenses may still overlap or leave the back, so that its error may be less than any that is
+    possible; the axis says so. The design may be better than every start: it may be a variation of one. A score that can be
+    negative is drawn itself, not its root.
 
     Args:
         ax: drawn on.
@@ -48,7 +49,7 @@ def draw_convergence(ax: Axes, convergence: Convergence, score: float) -> None:
         ax.set_yscale("log")
         ax.set_ylim(*_limits(heights, polished[feasible], final))
         _tick_in_plain_numbers(ax)
-    ax.set_xlabel("step of the descent (lenses may overlap until the growing penalty has parted them)")
+    ax.set_xlabel("step of the interior-point method (in the first steps lenses may overlap)")
     ax.set_ylabel("RMSE of the layout as it stands (mm)" if rooted else "score of the layout as it stands")
     ax.grid(True, which="major", color="#ececec", linewidth=0.8)
     ax.set_axisbelow(True)
@@ -82,10 +83,10 @@ def _leads_125(value: float) -> bool:
 
 def _draw_legend(ax: Axes, convergence: Convergence, feasible: int, final: str) -> None:
     failed = len(convergence.polished_scores) - feasible
-    marks = f"{feasible} polished, feasible" + (f" ({failed} did not become so)" if failed else "")
+    marks = f"{feasible} starts polished, feasible" + (f" ({failed} did not become so)" if failed else "")
     handles = [
         Line2D([], [], color=START, linewidth=1.0, label=f"{len(convergence.scores)} starts"),
-        Line2D([], [], color=BEST, linewidth=2.4, label="the start of the best design"),
+        Line2D([], [], color=BEST, linewidth=2.4, label="the best start that was polished"),
         Line2D([], [], color=INK, marker="D", markersize=5, linestyle="none", alpha=0.6, label=marks),
         Line2D([], [], color=INK, linewidth=1.0, linestyle=(0, (5, 3)), label=f"design: {final}"),
     ]
