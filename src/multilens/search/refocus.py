@@ -85,7 +85,7 @@ def _by_lines(problem: Problem, variables: Variables, share: Tensor, foci: list[
             stereo = (cue.gain(layout, problem.lenses).amin(-1, keepdim=True) / steep).to(kind) * line
     curves = slope.unsqueeze(-1) * (line - (zf / unit).to(kind).unsqueeze(-1)).abs()
     if afresh:
-        curves = torch.full_like(curves, 1e15)
+        curves[:, foci] = 1e15
     share = share.clone()
     values = torch.linspace(0, 1, VALUES).to(share)
     near, far = variables.low[variables.focus_start :], variables.high[variables.focus_start :]
