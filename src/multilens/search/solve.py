@@ -190,16 +190,15 @@ class _Search:
 
     def open(self, starts: int, batch: int) -> None:
         """Settle fresh starts, a batch at a time."""
-        vectors = scattered_starts(self.question, self.exact, starts, self.seed)
-        share = self.exact.spread(vectors).to(self.variables.low)
         radii = slice(2 * self.exact.count, self.exact.focus_start)
-        share[:, radii] *= 0.5
         # The first answer is waited for, so half of a batch comes first.
         for first, last in pairwise([0, *range((batch + 1) // 2, starts, batch), starts]):
             if first and self._late():
                 break
-            share_of_batch = part(self.variables, self.price, share[first:last])
-            settled = self._settle(share_of_batch, FROM_AFAR, afresh=True)
+            vectors = scattered_starts(self.question, self.exact, last - first, self.seed, first)
+            share = self.exact.spread(vectors).to(self.variables.low)
+            share[:, radii] *= 0.5
+            settled = self._settle(part(self.variables, self.price, share), FROM_AFAR, afresh=True)
             self.tally.histories.append(self._scores(settled.history))
             self.alive += int(settled.value.isfinite().sum())
             self._take(settled, first)

@@ -21,10 +21,12 @@ PLACES_TRIED = 4096
 """Spread over the bounding box; a back that fills a tenth of it leaves about 400 to choose from."""
 
 
-def scattered_starts(question: Question, variables: Variables, count: int, seed: int) -> Float[Tensor, "count d"]:
+def scattered_starts(
+    question: Question, variables: Variables, count: int, seed: int, first: int = 0
+) -> Float[Tensor, "count d"]:
     """Give vectors from a scrambled Sobol sequence, every lens that is free to go anywhere where its smallest body fits.
 
-    In every second one two lenses stand as far apart as the back allows in some direction: the widest pair decides stereo.
+    In every second one, the second, the fourth and so on, two lenses stand as far apart as the back allows in some direction.
 
     A longer list begins with a shorter one of the same seed: what start i is does not depend on how many there are.
 
@@ -33,11 +35,12 @@ def scattered_starts(question: Question, variables: Variables, count: int, seed:
         variables: says which unknowns are free.
         count: how many starts, >= 1.
         seed: of the scrambling.
+        first: how many starts of the sequence to leave out, >= 0.
 
     Returns:
         Vectors, in the variables' own units.
     """
-    draws = _sobol(len(variables) + len(question.lenses) + 2, count, seed).to(variables.upper)
+    draws = _sobol(len(variables) + len(question.lenses) + 2, count, seed, first).to(variables.upper)
     layout = variables.layout(draws[:, : len(variables)] * variables.upper)
     position = layout.position.clone()
     tried, room = tried_places(question.back, seed)
@@ -46,7 +49,8 @@ def scattered_starts(question: Question, variables: Variables, count: int, seed:
         if lens.position is None and len(places):
             chosen = (draws[:, len(variables) + index] * len(places)).long().clamp(max=len(places) - 1)
             position[:, index] = places.to(position)[chosen]
-    for some, drawn in zip(position[1::2].split(AT_ONCE), draws[1::2, -2:].split(AT_ONCE), strict=True):
+    second = slice((first + 1) % 2, None, 2)
+    for some, drawn in zip(position[second].split(AT_ONCE), draws[second, -2:].split(AT_ONCE), strict=True):
         _part_two(question, some, drawn, tried.to(position), room.to(position))
     return variables.vector(Layout(position, layout.aperture_radius, layout.focus))
 
@@ -77,5 +81,5 @@ def tried_places(back: Back, seed: int) -> tuple[Float[Tensor, "p 2"], Float[Ten
     return tried, torch.from_numpy(room_at(back, tried[:, 0].numpy(), tried[:, 1].numpy()))
 
 
-def _sobol(dimensions: int, count: int, seed: int) -> Float[Tensor, "count d"]:
-    return SobolEngine(dimensions, scramble=True, seed=seed).draw(count, dtype=torch.float64)
+def _sobol(dimensions: int, count: int, seed: int, first: int = 0) -> Float[Tensor, "count d"]:
+    return SobolEngine(dimensions, scramble=True, seed=seed).fast_forward(first).draw(count, dtype=torch.float64)
