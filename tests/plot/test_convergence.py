@@ -47,7 +47,7 @@ def test_feasible_polished_scores_are_marks_to_the_right_of_the_last_step():
 
 
 def test_what_did_not_become_feasible_is_counted():
-    assert "2 starts polished, feasible (1 did not become so)" in words(drawn(CONVERGENCE, 5.76))
+    assert "2 polished, feasible (1 did not become so)" in words(drawn(CONVERGENCE, 5.76))
 
 
 def test_the_axis_says_that_early_layouts_may_overlap():
@@ -69,7 +69,7 @@ def test_negative_scores_are_drawn_themselves_on_a_linear_axis():
 
 def test_nothing_polished_is_drawn():
     short = Convergence((0,), torch.tensor([[4.0], [9.0]]), (1,), ())
-    assert "0 starts polished, feasible" in words(drawn(short, 4.0))
+    assert "0 polished, feasible" in words(drawn(short, 4.0))
 
 
 def test_the_legend_is_not_cut():

@@ -83,7 +83,7 @@ def _leads_125(value: float) -> bool:
 
 def _draw_legend(ax: Axes, convergence: Convergence, feasible: int, final: str) -> None:
     failed = len(convergence.polished_scores) - feasible
-    marks = f"{feasible} starts polished, feasible" + (f" ({failed} did not become so)" if failed else "")
+    marks = f"{feasible} polished, feasible" + (f" ({failed} did not become so)" if failed else "")
     handles = [
         Line2D([], [], color=START, linewidth=1.0, label=f"{len(convergence.scores)} starts"),
         Line2D([], [], color=BEST, linewidth=2.4, label="the best start that was polished"),
