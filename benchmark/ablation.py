@@ -58,7 +58,6 @@ IDEAS: dict[str, tuple[Without, dict[str, Any]]] = {
         lambda: patch("multilens.search.solve.part", lambda variables, price, share: share),
         {},
     ),
-    "without far pairs among the starts": (lambda: patch("multilens.search.starts._part_two"), {}),
     "without sharing out foci at the start": (lambda: patch.object(Foci, "afresh", without_shared_out), {}),
     "without better foci for variations": (lambda: patch.object(Foci, "improved", unchanged), {}),
     "without a last look at the foci of the best": (lambda: patch.object(Foci, "best_for", unchanged), {}),

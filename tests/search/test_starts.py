@@ -5,7 +5,6 @@ import torch
 from shapely import Point
 
 import multilens as ml
-from multilens.geometry.pairs import pair_distance
 from multilens.search.starts import scattered_starts, tried_places
 from multilens.search.variables import Variables
 
@@ -23,16 +22,6 @@ def test_a_list_may_be_drawn_in_parts(crowded: ml.Problem) -> None:
         scattered_starts(crowded, variables, count, seed=3, first=first) for first, count in ((0, 5), (5, 4), (9, 3))
     ]
     assert torch.equal(torch.cat(parts), whole)
-
-
-def test_every_second_start_has_two_lenses_far_apart() -> None:
-    back = ml.Back.rectangle(40, 10)
-    problem = ml.Problem(back, [ml.Lens(1.0, (0.5, 1.0))] * 3, ml.log_depths(200, 900, 8))
-    variables = Variables(problem)
-    baseline = pair_distance(variables.layout(scattered_starts(problem, variables, 400, seed=0)).position).amax(-1)
-    # Two points drawn anywhere on the rectangle are two thirds of its length apart or less, most of the time.
-    assert baseline[1::2].median() > 37
-    assert baseline[::2].median() < 27
 
 
 def test_another_seed_gives_other_starts(crowded: ml.Problem) -> None:
