@@ -138,15 +138,15 @@ def test_the_same_seed_gives_the_same_design_to_the_bit(crowded: ml.Problem) -> 
 
 
 def test_threads_change_nothing() -> None:
-    # Large enough for torch and the linear algebra to share the work among threads, were they left to.
+    # Large enough for torch and the linear algebra to share the work among threads, and to round otherwise, were they left to.
     lens = ml.Lens(5.0, (0.5, 2.0), clearance=1.0, disparity_noise=1e-3, blur_noise=1e-3)
-    problem = ml.Problem(ml.Back.rectangle(40, 30), [lens] * 6, ml.log_depths(300, 2000, 512))
+    problem = ml.Problem(ml.Back.rectangle(60, 40), [lens] * 8, ml.log_depths(300, 2000, 512))
     used, designs = torch.get_num_threads(), []
     try:
         for threads in (1, 2):
             torch.set_num_threads(threads)
             with threadpool_limits(threads):
-                designs.append(ml.solve(problem, starts=32, patience=0, proof=0))
+                designs.append(ml.solve(problem, starts=64, patience=0, proof=0, batch=128))
             assert torch.get_num_threads() == threads
     finally:
         torch.set_num_threads(used)
