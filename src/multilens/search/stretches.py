@@ -27,11 +27,14 @@ class Stretches:
         self.to_end = sums[2]
         """Sum of w Z^4 over all depths before each end."""
         forward = second > 0
-        self.focus = third / second.where(forward, 1)
+        # More foci than depths are left over: an empty stretch costs nothing, its focus is at the depth beside it.
+        empty = torch.eye(len(ends), dtype=torch.bool, device=depth.device)
+        beside = depth[ends.clamp(max=len(depth) - 1)]
+        self.focus = torch.where(empty, beside, third / second.where(forward, 1))
         """Best focus of a stretch from one end to another, sum w Z^3 / sum w Z^2, mm."""
         cost = (fourth - third * self.focus).clamp(min=0)
-        self.cost = cost.where(forward, torch.inf)
-        """Least sum of w Z^2 (Z - Zf)^2 over it, mm^4; infinite where it is empty."""
+        self.cost = cost.where(forward, torch.inf).masked_fill(empty, 0)
+        """Least sum of w Z^2 (Z - Zf)^2 over it, mm^4; infinite where it would end before it begins."""
 
     def best_foci(self, gain: Float[Tensor, " b"], slope: Float[Tensor, " b"], count: int) -> Float[Tensor, "b count"]:
         """Give the foci that serve the depths best, nearest first.
