@@ -28,7 +28,7 @@ from multilens.app.schema import Config, LensConfig, ShapeConfig
 ROOT = Path(__file__).parents[1]
 PAGES = [ROOT / name for name in ("README.md", "CONTRIBUTING.md", "CHANGELOG.md")] + sorted(ROOT.glob("docs/*.md"))
 
-QUICK = {"search.starts": "4", "search.patience": "0", "depth.count": "24"}
+QUICK = {"search.starts": "4", "search.patience": "0", "search.proof": "1", "depth.count": "24"}
 
 BLOCK = re.compile(r"^```(\w*)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
 NUMBER = re.compile(r"-?\d+(\.\d+)?(e[+-]?\d+)?")

@@ -7,7 +7,7 @@ import pytest
 
 from multilens.app.command import run_command
 
-SMALL = ["back=rectangle", "lenses.count=2", "depth.count=8", "search.starts=4", "search.patience=0"]
+SMALL = ["back=rectangle", "lenses.count=2", "depth.count=8", "search.starts=4", "search.patience=0", "search.proof=1"]
 TOO_SMALL = ["back.outline.width=5", "back.outline.height=5"]
 
 
