@@ -73,12 +73,9 @@ def _tick_in_plain_numbers(ax: Axes) -> None:
     plain = FuncFormatter(lambda value, _: f"{value:g}")
     ax.yaxis.set_major_formatter(plain)
     low, high = ax.get_ylim()
-    few = high / low < 20
-    ax.yaxis.set_minor_formatter(FuncFormatter(lambda value, _: f"{value:g}" if few and _leads_125(value) else ""))
-
-
-def _leads_125(value: float) -> bool:
-    return f"{value:.0e}"[0] in "125"
+    # Of a short range every digit is named, of a longer one three, and of a long one the powers of ten alone.
+    named = "123456789" if high / low < 8 else "125" if high / low < 20 else ""
+    ax.yaxis.set_minor_formatter(FuncFormatter(lambda value, _: f"{value:g}" if f"{value:.0e}"[0] in named else ""))
 
 
 def _draw_legend(ax: Axes, convergence: Convergence, feasible: int, final: str) -> None:
