@@ -64,7 +64,7 @@ class TabledCut:
     """
 
     worth: Float[np.ndarray, " z"]
-    saved: tuple[Float[np.ndarray, " a"], ...]
+    saved: tuple[Float[np.ndarray, " _"], ...]
     prices: Float[np.ndarray, " p"]
     tables: tuple[SavingsTable, ...]
 
@@ -72,8 +72,8 @@ class TabledCut:
     def of(
         cls,
         worth: Float[np.ndarray, " z"],
-        saved: Sequence[Float[np.ndarray, " a"]],
-        areas: Sequence[Float[np.ndarray, " a"]],
+        saved: Sequence[Float[np.ndarray, " _"]],
+        areas: Sequence[Float[np.ndarray, " _"]],
         counts: Sequence[int],
         room: float,
     ) -> "TabledCut":
@@ -93,8 +93,8 @@ class TabledCut:
 
 
 def best_price(
-    saved: Sequence[Float[np.ndarray, " a"]],
-    areas: Sequence[Float[np.ndarray, " a"]],
+    saved: Sequence[Float[np.ndarray, " _"]],
+    areas: Sequence[Float[np.ndarray, " _"]],
     counts: Sequence[int],
     room: float,
 ) -> float:
