@@ -62,3 +62,13 @@ def test_a_back_of_many_edges_is_started_on_quickly() -> None:
     scattered_starts(problem, variables, 32, seed=0)
     # A second is ten times what it takes; a distance to every edge from every place would take minutes.
     assert monotonic() - began < 5
+
+
+@pytest.mark.parametrize("first", [1, 4, 39])
+def test_a_list_may_begin_further_on(crowded: ml.Problem, first: int) -> None:
+    variables = Variables(crowded)
+    every, later = (
+        scattered_starts(crowded, variables, 40, 3),
+        scattered_starts(crowded, variables, 40 - first, 3, first),
+    )
+    assert every[first:].equal(later)
