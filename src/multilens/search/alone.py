@@ -4,6 +4,7 @@ import numpy as np
 import torch
 from jaxtyping import Float
 
+from multilens.cues import NANOMETRE
 from multilens.problem import Problem, Question
 from multilens.search.limits import Limits
 from multilens.search.variables import Variables
@@ -13,9 +14,6 @@ MOST_EDGES_WATCHED = 12
 
 MOST_PAIRS_WATCHED = 4
 """Pairs for each lens, those with the least room: few of all pairs are ever close."""
-
-NANOMETRE = 1e-6
-"""mm; the least baseline that is reckoned with."""
 
 ValueAndGradient = tuple[Float[np.ndarray, " m"], Float[np.ndarray, "m d"]]
 

@@ -30,10 +30,6 @@ class Room:
     inside: Float[Tensor, "*batch n e"]
     inward: Float[Tensor, "*batch n e 2"]
 
-    def to(self, dtype: torch.dtype) -> "Room":
-        """Give the same in another floating-point type."""
-        return Room(*(part.to(dtype) for part in (self.apart, self.parting, self.inside, self.inward)))
-
     @property
     def least(self) -> Float[Tensor, "*batch"]:
         """The least room, mm: a layout is feasible where it is not negative."""

@@ -105,7 +105,7 @@ class Seer:
         """
         value, slope = self._value_and_slope(share, width)
         with torch.no_grad():
-            room = self.limits(self.variables.layout_of(share)).to(share.dtype)
+            room = self.limits(self.variables.layout_of(share))
             pull = pad(room.parting, (0, 1), value=-1.0)
             push = pad(-room.parting, (0, 1), value=-1.0)
             edge = pad(room.inward, (0, 1), value=-1.0)
