@@ -1,13 +1,13 @@
-"""Cues: what can be measured at a depth, by which lenses, and how far off the measured depth will be."""
+"""The cues of the thesis: stereo of every pair and defocus of every lens, each with a scalar for its noise."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Protocol, runtime_checkable
 
 import torch
 from jaxtyping import Float
 from torch import Tensor
 
+from multilens.cues.cue import Measurement
 from multilens.geometry.pairs import pair_distance, pair_indices
 from multilens.layout import Layout
 from multilens.lens import Lens
@@ -16,54 +16,6 @@ from multilens.optics.stereo import pair_angular_noise
 
 NANOMETRE = 1e-6
 """mm"""
-
-
-@dataclass(frozen=True)
-class Measurement:
-    """One way to measure depth: a cue, and the lens or the two lenses it uses.
-
-    Args:
-        cue: name of the cue: stereo, defocus.
-        lenses: index of each lens that takes part, from 0.
-        tier: which of the lens' foci, from 0; None where the cue does not use one.
-        label: how tables and pictures call it; lenses and tiers are counted from 1 there.
-    """
-
-    cue: str
-    lenses: tuple[int, ...]
-    tier: int | None
-    label: str
-
-
-@runtime_checkable
-class Cue(Protocol):
-    """A way to measure depth, for every lens or pair of lenses that can."""
-
-    def measurements(self, lenses: Sequence[Lens]) -> tuple[Measurement, ...]:
-        """Name each of the k measurements that these lenses allow."""
-        ...
-
-    def __call__(
-        self, layout: Layout, lenses: Sequence[Lens], depths: Float[Tensor, " z"]
-    ) -> Float[Tensor, "*batch k z"]:
-        """Give the depth error of each measurement at each depth, mm, differentiable in the layout."""
-        ...
-
-
-@runtime_checkable
-class FactoredCue(Cue, Protocol):
-    """A cue whose measurements all depend on depth alike, err_k(Z) = gain_k shape(Z): the best of them is best everywhere.
-
-    Then the least of k numbers stands for the least of k curves.
-    """
-
-    def gain(self, layout: Layout, lenses: Sequence[Lens]) -> Float[Tensor, "*batch k"]:
-        """Give the factor of each measurement, differentiable in the layout."""
-        ...
-
-    def shape(self, depths: Float[Tensor, " z"]) -> Float[Tensor, " z"]:
-        """Give the factor that they share."""
-        ...
 
 
 @dataclass(frozen=True)
@@ -152,10 +104,6 @@ class LensDefocus:
             layout.aperture_radius[..., lens_index],
             layout.focus[..., lens_index, tier_index],
         )
-
-
-CUES = {"pair_stereo": PairStereo, "lens_defocus": LensDefocus}
-"""Every cue that a file or a command line may name. What is not in this table is never imported or called."""
 
 
 def _column(numbers: list[float], layout: Layout) -> Float[Tensor, " n"]:
