@@ -11,7 +11,7 @@ from torch.autograd import Function
 from torch.autograd.function import once_differentiable
 
 from multilens.cues import NANOMETRE, Cue, LensDefocus, PairStereo
-from multilens.envelope import DepthMoments, with_gradient
+from multilens.envelope import DepthMoments, mean_least_square
 from multilens.geometry.pairs import pair_indices
 from multilens.layout import Layout
 from multilens.lens import Lens
@@ -55,7 +55,7 @@ class ClosedForm:
             gain, best = (self.noise / distance).min(-1)
         else:
             gain, best = position.new_full(position.shape[:-2], inf), None
-        value, by_gain, by_slope, by_focus = with_gradient(gain, slope, on_focus, self.moments)
+        value, by_gain, by_slope, by_focus = mean_least_square(gain, slope, on_focus, self.moments)
         by_position = torch.zeros_like(position)
         if best is not None:
             chosen = best.unsqueeze(-1)

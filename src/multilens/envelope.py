@@ -6,13 +6,9 @@ wins, and its share of the score is a sum over depths of w Z^2, w Z^3 and w Z^4,
 not depend on how many depths there are, and all pairs count as one.
 """
 
-from typing import Any
-
 import torch
 from jaxtyping import Float
 from torch import Tensor
-from torch.autograd import Function
-from torch.autograd.function import once_differentiable
 
 TINY = 1e-300
 
@@ -46,32 +42,22 @@ def mean_least_square(
     slope: Float[Tensor, "*batch k"],
     focus: Float[Tensor, "*batch k"],
     moments: DepthMoments,
-) -> Float[Tensor, "*batch"]:
-    """Give sum_z w_z min(gain Z^2, min_k slope_k Z abs(Z - focus_k))^2, differentiable once.
+) -> tuple[Float[Tensor, "*batch"], Float[Tensor, "*batch"], Float[Tensor, "*batch k"], Float[Tensor, "*batch k"]]:
+    """Give sum_z w_z min(gain Z^2, min_k slope_k Z abs(Z - focus_k))^2 and its derivatives, without autograd.
 
     A steep V beats a flatter one in an interval around its own focus, and everything flatter in the intersection of these
-    intervals; where that holds for several, the steepest of them wins, and where for none, stereo. The gradient is that of
-    the winners: at a tie that of one of them.
+    intervals; where that holds for several, the steepest of them wins, and where for none, stereo. The derivatives are those
+    of the winners: at a tie those of one of them.
 
     Args:
         gain: g of the best pair, 1/mm, >= 0; infinite where there is no stereo.
         slope: h of each lens and tier, 1/mm, > 0.
         focus: in-focus depth of each, mm, > 0.
-        moments: of the depths.
+        moments: of the depths; float64 like all the rest, for sums of fourth powers need it.
 
     Returns:
-        The mean of the squared error, mm^2. Computed in float64 whatever the inputs are; sums of fourth powers need it.
+        The mean of the squared error, mm^2, and its derivatives with respect to gain, slope and focus.
     """
-    return _MeanLeastSquare.apply(gain, slope, focus, moments)  # type: ignore[return-value]
-
-
-def with_gradient(
-    gain: Float[Tensor, "*batch"],
-    slope: Float[Tensor, "*batch k"],
-    focus: Float[Tensor, "*batch k"],
-    moments: DepthMoments,
-) -> tuple[Tensor, Tensor, Tensor, Tensor]:
-    """Give `mean_least_square` and its derivatives with respect to gain, slope and focus, without autograd; all float64."""
     if not slope.shape[-1]:
         fourth = moments.sums[-1, 2]
         return gain.square() * fourth, 2 * gain * fourth, slope, focus
@@ -99,21 +85,6 @@ def with_gradient(
     by_gain, by_slope = gain * by_stereo, slope * miss
     value = (slope * by_slope).sum(-1) + gain * by_gain
     return value, 2 * by_gain, 2 * by_slope, 2 * slope.square() * drift
-
-
-class _MeanLeastSquare(Function):
-    @staticmethod
-    def forward(ctx: Any, gain: Tensor, slope: Tensor, focus: Tensor, moments: DepthMoments) -> Tensor:
-        value, *slopes = with_gradient(gain.double(), slope.double(), focus.double(), moments)
-        ctx.save_for_backward(*(each.to(slope.dtype) for each in slopes))
-        return value.to(slope.dtype)
-
-    @staticmethod
-    @once_differentiable
-    def backward(ctx: Any, grad: Tensor) -> tuple[Tensor, Tensor, Tensor, None]:  # type: ignore[override]
-        by_gain, by_slope, by_focus = ctx.saved_tensors
-        each = grad.unsqueeze(-1)
-        return grad * by_gain, each * by_slope, each * by_focus, None
 
 
 def _winning_intervals(

@@ -62,7 +62,8 @@ class Foci:
         dealt = self._shared_out(share.expand(1 + DEALT, -1), orders)
         tried = torch.cat([share.unsqueeze(0), dealt, self._one_by_one(dealt, afresh=False)])
         with torch.no_grad():
-            return tried[self.question.terms(self.variables.layout_of(tried)).amax(-1).argmin()]
+            scores = self.question.terms(self.variables.layout_of(tried)).amax(-1)
+            return tried[scores.nan_to_num(nan=torch.inf).argmin()]
 
     def _one_by_one(self, share: Tensor, afresh: bool) -> Tensor:
         order = torch.rand(len(self.variables.low) - self.variables.focus_start, generator=self.generator)

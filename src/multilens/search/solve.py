@@ -41,8 +41,11 @@ FROM_AFAR, FROM_NEARBY = 2e-2, 3e-3
 LAST = 1e-6
 """Pressure at which they end."""
 
-BATCH = 32
+BATCH = 64
 """Layouts that settle together: as many as the processor takes hardly longer for than for one."""
+
+LENSES_AT_FIRST = 192
+"""Lenses of all the layouts that settle before the first answer."""
 
 MOST_ELITE = 8
 """Layouts that are varied."""
@@ -191,8 +194,9 @@ class _Search:
     def open(self, starts: int, batch: int) -> None:
         """Settle fresh starts, a batch at a time."""
         radii = slice(2 * self.exact.count, self.exact.focus_start)
-        # The first answer is waited for, so half of a batch comes first.
-        for first, last in pairwise([0, *range((batch + 1) // 2, starts, batch), starts]):
+        # The first answer is waited for: few layouts come first where many lenses make them slow.
+        at_first = min(batch, max(1, LENSES_AT_FIRST // self.exact.count))
+        for first, last in pairwise([0, *range(at_first, starts, batch), starts]):
             if first and self._late():
                 break
             vectors = scattered_starts(self.question, self.exact, last - first, self.seed, first)

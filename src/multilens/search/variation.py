@@ -1,5 +1,7 @@
 """Layouts that are like good ones in most and unlike them in something: how a search leaves one basin for the next."""
 
+from collections.abc import Sequence
+
 import torch
 from jaxtyping import Float
 from torch import Generator, Tensor
@@ -45,15 +47,15 @@ class Varier:
             kind = int(self._draw(5))
             if kind == 0 and self.places:
                 self._relocate(place, radius)
-            elif kind == 1 and self.n > 1:
-                first, second = self._two()
+            elif kind == 1 and len(self.movable) > 1:
+                first, second = self._two_of(self.movable)
                 place[[first, second]] = place[[second, first]]
                 radius[[first, second]] = radius[[first, second]].min()
             elif kind == 2:
                 place += SHAKE * torch.randn(place.shape, generator=self.generator, dtype=place.dtype)
                 radius *= SHRUNKEN
             elif kind == 3 and self.n > 1:
-                first, second = self._two()
+                first, second = self._two_of(range(self.n))
                 for numbers in (radius, focus[: self.n]):
                     numbers[[first, second]] = numbers[[second, first]]
             else:
@@ -68,9 +70,9 @@ class Varier:
         radius *= SHRUNKEN
         radius[lens] = 0.05
 
-    def _two(self) -> tuple[int, int]:
-        first, second = torch.randperm(self.n, generator=self.generator)[:2].tolist()
-        return first, second
+    def _two_of(self, lenses: Sequence[int]) -> tuple[int, int]:
+        first, second = torch.randperm(len(lenses), generator=self.generator)[:2].tolist()
+        return lenses[first], lenses[second]
 
     def _draw(self, below: int, count: int | None = None) -> Tensor:
         return torch.randint(below, () if count is None else (count,), generator=self.generator)
