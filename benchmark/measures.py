@@ -22,6 +22,7 @@ class Run:
         case: name of the problem.
         method: its name.
         seed: of the run.
+        limit: how long it might take, s.
         seconds: that it took in all.
         found: what counts, better and better.
         failure: why it ended early or never began; empty where it did not.
@@ -30,6 +31,7 @@ class Run:
     case: str
     method: str
     seed: int
+    limit: float
     seconds: float
     found: tuple[Judged, ...]
     failure: str = ""
@@ -40,11 +42,10 @@ def best_at(run: Run, seconds: float) -> float:
     return min((each.score for each in run.found if each.seconds <= seconds), default=inf)
 
 
-def time_to(run: Run, score: float, limit: float) -> float:
-    """Give the seconds until a score was reached; infinity where it was not within the limit and the grace."""
-    return min(
-        (each.seconds for each in run.found if each.score <= score and each.seconds <= limit + GRACE), default=inf
-    )
+def time_to(run: Run, score: float) -> float:
+    """Give the seconds until a score was reached; infinity where it was not within the run's limit and the grace."""
+    in_time = (each for each in run.found if each.seconds <= run.limit + GRACE)
+    return min((each.seconds for each in in_time if each.score <= score), default=inf)
 
 
 def final(run: Run, limit: float) -> float:
@@ -63,7 +64,7 @@ def excess(score: float, best: float) -> float:
 
 
 def times_shorter(ours: float, theirs: float, limit: float) -> float:
-    """Give how many times shorter our time is; at least that where they never got there, 0 where we did not.
+    """Give how many times shorter our time is; at least that where they never got there in their limit, 0 where we did not.
 
     Where neither got there it is NaN.
     """

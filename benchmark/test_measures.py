@@ -9,7 +9,7 @@ from benchmark.referee import Judged
 
 
 def run(*found: tuple[float, float]) -> Run:
-    return Run("a", "b", 0, 10.0, tuple(Judged(seconds, score, []) for seconds, score in found))
+    return Run("a", "b", 0, 10.0, 10.0, tuple(Judged(seconds, score, []) for seconds, score in found))
 
 
 def test_the_best_score_after_a_time() -> None:
@@ -17,11 +17,11 @@ def test_the_best_score_after_a_time() -> None:
 
 
 def test_the_time_to_a_score() -> None:
-    assert [time_to(run((1.0, 5.0), (2.0, 4.0)), score, 10.0) for score in (6.0, 4.5, 3.0)] == [1.0, 2.0, inf]
+    assert [time_to(run((1.0, 5.0), (2.0, 4.0)), score) for score in (6.0, 4.5, 3.0)] == [1.0, 2.0, inf]
 
 
 def test_what_comes_long_after_the_limit_does_not_count() -> None:
-    assert time_to(run((11.0, 5.0)), 6.0, 10.0) == inf
+    assert time_to(run((11.0, 5.0)), 6.0) == inf
 
 
 @pytest.mark.parametrize(("numbers", "middle"), [([3.0, 1.0, 2.0], 2.0), ([1.0, inf], inf), ([1.0, inf, inf], inf)])

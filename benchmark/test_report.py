@@ -21,11 +21,11 @@ def made() -> Made:
     def results(ours: float | None, theirs: float | None, failure: str = "", bound: float | None = None) -> Results:
         def run(method: str, seed: int, seconds: float | None) -> Run:
             found = [Judged(0.1, 2.0, [])] + ([] if seconds is None else [Judged(seconds, 1.0, [])])
-            return Run(CASE.name, method, seed, 10.0, tuple(found))
+            return Run(CASE.name, method, seed, 10.0, 10.0, tuple(found))
 
         runs = [run(method, seed, time) for method, time in ((OURS, ours), (RIVAL, theirs)) for seed in range(3)]
         if failure:
-            runs.append(Run(CASE.name, "CMA-ES", 0, 0.0, (), failure))
+            runs.append(Run(CASE.name, "CMA-ES", 0, 10.0, 0.0, (), failure))
         best = {CASE.name: Entry("", 1.0, "somebody", [])}
         bounds = {CASE.name: Bound(bound, "for the test", 0.0)}
         speed = [["type", "device", "batch", "ratio"], ["float32", "cpu", 256, 25.0]]
