@@ -42,6 +42,6 @@ def test_presets_of_ones_own_are_found(tmp_path: Path):
     ],
 )
 def test_what_cannot_be_composed_is_refused_in_one_line(words: list[str], told: str):
-    with pytest.raises(RefusedError, match="^[^\n]*$") as refusal:
+    with pytest.raises(RefusedError, match=r"\A[^\n]*\Z") as refusal:
         read_given(words)
     assert told in str(refusal.value)
