@@ -21,6 +21,10 @@ class Lens:
         tiers: sensors behind the one aperture, each with a focus of its own (a jumping spider's eye has 4), >= 1.
         position: None for a free lens, (x, y) in mm for a locked one, and None in place of one coordinate for a lens that
             slides along a line.
+        field_of_view_deg: angle of the whole cone that the lens sees, from side to side, degrees, > 0 and < 180; None where it
+            is unknown, which limits nothing.
+        near_focus: nearest depth that the lens can bring into focus, and that it is trusted to measure, mm, > 0 and no more than
+            the nearest of `focus`; None where it is unknown, which limits nothing.
 
     Raises:
         ValueError: a number is out of its range.
@@ -34,6 +38,8 @@ class Lens:
     blur_noise: float = 1.0
     tiers: int = 1
     position: tuple[float | None, float | None] | None = None
+    field_of_view_deg: float | None = None
+    near_focus: float | None = None
 
     def __post_init__(self) -> None:
         _refuse_unless_positive("focal_length", self.focal_length)
@@ -51,6 +57,16 @@ class Lens:
         for name, coordinate in zip("xy", self.position or (), strict=False):
             if coordinate is not None and not isfinite(coordinate):
                 raise ValueError(f"{name} of position must be finite, got {coordinate:g}")
+        self._refuse_unless_limits()
+
+    def _refuse_unless_limits(self) -> None:
+        angle, near = self.field_of_view_deg, self.near_focus
+        if angle is not None and not 0 < angle < 180:
+            raise ValueError(f"field_of_view_deg must be > 0 and < 180 degrees, got {angle:g}")
+        if near is not None:
+            _refuse_unless_positive("near_focus", near)
+            if self.focus is not None and self.focus[0] < near:
+                raise ValueError(f"near_focus must be <= the nearest focus = {self.focus[0]:g} mm, got {near:g}")
 
     @classmethod
     def from_f_number(cls, focal_length: float, f_number: tuple[float, float], **others: Any) -> "Lens":
