@@ -3,11 +3,13 @@
 import re
 from collections.abc import Callable, Sequence
 from copy import deepcopy
+from dataclasses import replace
 from math import isfinite
 from typing import TYPE_CHECKING, Any
 
 from omegaconf import DictConfig, OmegaConf, open_dict
 
+from multilens.app.estimates import refuse_stray_estimates
 from multilens.app.refusal import RefusedError, one_line, refused_at
 from multilens.app.schema import BackConfig, Config, CueName, LensConfig, LensesConfig, ShapeConfig, ShapeKind, Spacing
 from multilens.back import Back
@@ -54,6 +56,7 @@ def check(config: Config) -> None:
         raise RefusedError(f"name must be letters, digits, '.', '_' and '-' without '..', got {config.name!r}")
     build_back(config.back)
     build_lenses(config.lenses)
+    refuse_stray_estimates(config)
     near, far = config.depth.near, config.depth.far
     if not (isfinite(near) and near > 0):
         raise RefusedError(f"depth.near must be > 0 mm and finite, got {near:g}")
@@ -99,11 +102,12 @@ def build_lenses(config: LensesConfig) -> tuple[Lens, ...]:
                 "lenses.each lists the lenses one by one: lenses.count and lenses.lens must be null beside it"
             )
         _refuse_unless_count("lenses.each: the number of lenses", len(config.each), 1, MOST_LENSES)
-        return tuple(_build_lens(f"lenses.each.{index}", lens) for index, lens in enumerate(config.each))
+        lenses = tuple(_build_lens(f"lenses.each.{index}", lens) for index, lens in enumerate(config.each))
+        return _placed(lenses, config.places)
     if config.lens is None or config.count is None:
         raise RefusedError("lenses must have count and lens, or each, got neither")
     _refuse_unless_count("lenses.count", config.count, 1, MOST_LENSES)
-    return (_build_lens("lenses.lens", config.lens),) * config.count
+    return _placed((_build_lens("lenses.lens", config.lens),) * config.count, config.places)
 
 
 def build_problem(config: Config) -> "Problem":
@@ -125,7 +129,24 @@ def build_problem(config: Config) -> "Problem":
         return Problem(back, lenses, range_of_depths, cues=named, gap=config.lenses.gap)
 
 
+def _placed(lenses: tuple[Lens, ...], places: list[Any] | None) -> tuple[Lens, ...]:
+    """Give the lenses with the places in place of their own; null leaves a lens as it is."""
+    if places is None:
+        return lenses
+    if len(places) != len(lenses):
+        raise RefusedError(f"lenses.places must be one for each of the {len(lenses)} lenses, got {len(places)}")
+    pairs = enumerate(zip(lenses, places, strict=True))
+    with refused_at("lenses.places"):
+        return tuple(
+            lens if place is None else replace(lens, position=_point(f"lenses.places.{index}", place))
+            for index, (lens, place) in pairs
+        )
+
+
 def _build_lens(key: str, config: LensConfig) -> Lens:
+    if config.focal_length is None:
+        called = "" if config.name is None else f" ({config.name})"
+        raise RefusedError(f"{key}.focal_length{called} is unknown, no source gives it: set it, mm, got null")
     others: dict[str, Any] = {
         "clearance": config.clearance,
         "disparity_noise": config.disparity_noise,
