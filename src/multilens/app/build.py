@@ -154,6 +154,8 @@ def _build_lens(key: str, config: LensConfig) -> Lens:
         "tiers": config.tiers,
         "focus": None if config.focus is None else _pair(f"{key}.focus", config.focus),
         "position": None if config.position is None else _pair(f"{key}.position", config.position),
+        "field_of_view_deg": config.field_of_view_deg,
+        "near_focus": config.near_focus,
     }
     if (config.aperture_radius is None) == (config.f_number is None):
         given = "neither" if config.f_number is None else "both"

@@ -94,6 +94,8 @@ class LensConfig:
         blur_noise: mm on the sensor.
         tiers: sensors behind the one aperture.
         position: x and y, mm, null for a free lens, null in place of one of them for a lens that slides.
+        field_of_view_deg: angle of the whole cone that the lens sees; null where unknown.
+        near_focus: nearest depth that the lens brings into focus, mm; null where unknown.
         name: what the lens is called, such as tele.
         estimates: which of these numbers no source gives, by their keys, and what each rests on.
     """
@@ -107,6 +109,8 @@ class LensConfig:
     blur_noise: float = 1.0
     tiers: int = 1
     position: list[float | None] | None = None
+    field_of_view_deg: float | None = None
+    near_focus: float | None = None
     name: str | None = None
     estimates: dict[str, str] = field(default_factory=dict)
 
