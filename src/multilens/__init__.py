@@ -13,6 +13,8 @@ if TYPE_CHECKING:
     from multilens.bounds.bound import lower_bound as lower_bound
     from multilens.cues import LensDefocus as LensDefocus
     from multilens.cues import PairStereo as PairStereo
+    from multilens.depths import linear_depths as linear_depths
+    from multilens.depths import log_depths as log_depths
     from multilens.design import Design as Design
     from multilens.geometry.shape import disc as disc
     from multilens.geometry.shape import polygon as polygon
@@ -22,10 +24,10 @@ if TYPE_CHECKING:
     from multilens.penalty import area_penalty as area_penalty
     from multilens.penalty import distance_penalty as distance_penalty
     from multilens.problem import Problem as Problem
-    from multilens.problem import ScoreProblem as ScoreProblem
-    from multilens.problem import linear_depths as linear_depths
-    from multilens.problem import log_depths as log_depths
+    from multilens.scene import Scene as Scene
+    from multilens.score_problem import ScoreProblem as ScoreProblem
     from multilens.search.solve import solve as solve
+    from multilens.sensor import Sensor as Sensor
 
 _HOME = {
     "Back": "back",
@@ -36,12 +38,14 @@ _HOME = {
     "LensDefocus": "cues",
     "PairStereo": "cues",
     "Problem": "problem",
-    "ScoreProblem": "problem",
+    "Scene": "scene",
+    "ScoreProblem": "score_problem",
+    "Sensor": "sensor",
     "area_penalty": "penalty",
     "disc": "geometry.shape",
     "distance_penalty": "penalty",
-    "linear_depths": "problem",
-    "log_depths": "problem",
+    "linear_depths": "depths",
+    "log_depths": "depths",
     "lower_bound": "bounds.bound",
     "polygon": "geometry.shape",
     "rectangle": "geometry.shape",
