@@ -8,11 +8,13 @@ import torch
 from multilens.back import Back
 from multilens.certificate import Certificate, Clearance, certify
 from multilens.convergence import Convergence
+from multilens.depths import log_depths
 from multilens.design import INFEASIBLE, Design
 from multilens.geometry.shape import disc
 from multilens.layout import Layout
 from multilens.lens import Lens
-from multilens.problem import Problem, ScoreProblem, log_depths
+from multilens.problem import Problem
+from multilens.score_problem import ScoreProblem
 from multilens.search.solve import solve
 from multilens.storage import Origin
 

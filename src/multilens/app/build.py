@@ -117,7 +117,8 @@ def build_problem(config: Config) -> "Problem":
         RefusedError: something is out of its range or does not go together.
     """
     from multilens.cues import LensDefocus, PairStereo
-    from multilens.problem import Problem, linear_depths, log_depths
+    from multilens.depths import linear_depths, log_depths
+    from multilens.problem import Problem
 
     cues = {CueName["stereo"]: PairStereo, CueName["defocus"]: LensDefocus}
     depths = {Spacing["linear"]: linear_depths, Spacing["log"]: log_depths}

@@ -11,7 +11,8 @@ from multilens.bounds.kinds import kinds_of
 from multilens.bounds.packing import Space
 from multilens.bounds.room import body_area, box_area
 from multilens.cues import LensDefocus, PairStereo
-from multilens.problem import Problem, Question
+from multilens.problem import Problem
+from multilens.question import Question
 
 
 @dataclass(frozen=True)
@@ -52,6 +53,8 @@ def lower_bound(problem: Question, boxes: int = 4000, target: float = inf) -> Bo
     strange = [type(cue).__name__ for cue in problem.cues if type(cue) not in (PairStereo, LensDefocus)]
     if strange:
         return Bound(None, f"no bound is known for the cue {strange[0]}")
+    if problem.prior_error is not None:
+        return Bound(None, "no bound is known where a guess stands in for what is not measured")
     kinds = kinds_of(problem)
     if kinds is None:
         return Bound(None, "no layout is feasible: a lens has no room even at its smallest aperture")

@@ -5,7 +5,8 @@ import torch
 from jaxtyping import Float
 
 from multilens.cues import NANOMETRE
-from multilens.problem import Problem, Question
+from multilens.problem import Problem
+from multilens.question import Question
 from multilens.search.limits import Limits
 from multilens.search.variables import Variables
 

@@ -5,7 +5,8 @@ from jaxtyping import Float
 from torch import Generator, Tensor
 
 from multilens.cues import LensDefocus
-from multilens.problem import Problem, Question
+from multilens.problem import Problem
+from multilens.question import Question
 from multilens.search.refocus import refocus
 from multilens.search.stretches import Stretches
 from multilens.search.variables import Variables

@@ -10,7 +10,8 @@ from torch.nn.functional import pad
 
 from multilens.geometry.pairs import pair_indices
 from multilens.numerics import soft_maximum
-from multilens.problem import Problem, Question
+from multilens.problem import Problem
+from multilens.question import Question
 from multilens.search.near_limits import NearLimits
 from multilens.search.variables import Variables
 
