@@ -12,6 +12,8 @@ if TYPE_CHECKING:
     from multilens.bounds.bound import Bound as Bound
     from multilens.bounds.bound import lower_bound as lower_bound
     from multilens.cues import LensDefocus as LensDefocus
+    from multilens.cues import LimitedStereo as LimitedStereo
+    from multilens.cues import PairLimits as PairLimits
     from multilens.cues import PairStereo as PairStereo
     from multilens.depths import linear_depths as linear_depths
     from multilens.depths import log_depths as log_depths
@@ -36,6 +38,8 @@ _HOME = {
     "Layout": "layout",
     "Lens": "lens",
     "LensDefocus": "cues",
+    "LimitedStereo": "cues",
+    "PairLimits": "cues",
     "PairStereo": "cues",
     "Problem": "problem",
     "Scene": "scene",
