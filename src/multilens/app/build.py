@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 from omegaconf import DictConfig, OmegaConf, open_dict
 
+from multilens.app.cues import build_cues, check_cues
 from multilens.app.estimates import refuse_stray_estimates
 from multilens.app.refusal import RefusedError, one_line, refused_at
-from multilens.app.schema import BackConfig, Config, CueName, LensConfig, LensesConfig, ShapeConfig, ShapeKind, Spacing
+from multilens.app.schema import BackConfig, Config, LensConfig, LensesConfig, ShapeConfig, ShapeKind, Spacing
 from multilens.back import Back
 from multilens.geometry import shape
 from multilens.geometry.shape import Shape
@@ -63,9 +64,7 @@ def check(config: Config) -> None:
     if not (isfinite(far) and far > near):
         raise RefusedError(f"depth.far must be > depth.near = {near:g} mm and finite, got {far:g}")
     _refuse_unless_count("depth.count", config.depth.count, 2, MOST_DEPTHS)
-    if not config.cues.names or len(set(config.cues.names)) < len(config.cues.names):
-        given = ", ".join(cue.name for cue in config.cues.names) or "none"
-        raise RefusedError(f"cues.names must be at least one of stereo and defocus, each once, got {given}")
+    check_cues(config.cues)
     _refuse_unless_count("search.starts", config.search.starts, 1, MOST_STARTS)
     _refuse_unless_count("search.patience", config.search.patience, 0, MOST_STARTS)
     _refuse_unless_count("search.proof", config.search.proof, 0, MOST_BOXES)
@@ -116,18 +115,15 @@ def build_problem(config: Config) -> "Problem":
     Raises:
         RefusedError: something is out of its range or does not go together.
     """
-    from multilens.cues import LensDefocus, PairStereo
     from multilens.depths import linear_depths, log_depths
     from multilens.problem import Problem
 
-    cues = {CueName["stereo"]: PairStereo, CueName["defocus"]: LensDefocus}
     depths = {Spacing["linear"]: linear_depths, Spacing["log"]: log_depths}
     back, lenses = build_back(config.back), build_lenses(config.lenses)
     with refused_at("depth"):
         range_of_depths = depths[config.depth.spacing](config.depth.near, config.depth.far, config.depth.count)
     with refused_at("cues"):
-        named = [cues[name]() for name in config.cues.names]
-        return Problem(back, lenses, range_of_depths, cues=named, gap=config.lenses.gap)
+        return Problem(back, lenses, range_of_depths, cues=build_cues(config.cues), gap=config.lenses.gap)
 
 
 def _placed(lenses: tuple[Lens, ...], places: list[Any] | None) -> tuple[Lens, ...]:

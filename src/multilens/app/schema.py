@@ -16,7 +16,7 @@ SCHEMA = "multilens_schema"
 ShapeKind = Enum("ShapeKind", ["rectangle", "rounded_rectangle", "disc", "polygon"])
 """The kinds of outline that a configuration can name."""
 
-CueName = Enum("CueName", ["stereo", "defocus"])
+CueName = Enum("CueName", ["stereo", "defocus", "limited_stereo"])
 """The cues that a configuration can name."""
 
 PenaltyName = Enum("PenaltyName", ["distance", "area"])
@@ -155,14 +155,29 @@ class DepthConfig:
 
 
 @dataclass
+class PairLimitsConfig:
+    """When two lenses may measure depth together, beside what the lenses themselves cannot do.
+
+    Args:
+        max_disparity: largest shift that a matcher finds, mm on the sensor of the longer lens; null for any.
+        least_overlap: part of the narrower field of view that both lenses must see.
+    """
+
+    max_disparity: float | None = None
+    least_overlap: float = 0.0
+
+
+@dataclass
 class CuesConfig:
     """Ways to measure depth.
 
     Args:
-        names: of stereo and defocus, at least one.
+        names: at least one.
+        limits: of the pairs of limited_stereo.
     """
 
     names: list[CueName] = MISSING
+    limits: PairLimitsConfig = field(default_factory=PairLimitsConfig)
 
 
 @dataclass
