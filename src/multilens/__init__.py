@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from multilens.problem import Problem as Problem
     from multilens.scene import Scene as Scene
     from multilens.score_problem import ScoreProblem as ScoreProblem
+    from multilens.search.evaluate import evaluate as evaluate
     from multilens.search.solve import solve as solve
     from multilens.sensor import Sensor as Sensor
 
@@ -48,6 +49,7 @@ _HOME = {
     "area_penalty": "penalty",
     "disc": "geometry.shape",
     "distance_penalty": "penalty",
+    "evaluate": "search.evaluate",
     "linear_depths": "depths",
     "log_depths": "depths",
     "lower_bound": "bounds.bound",
