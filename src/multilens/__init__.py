@@ -18,11 +18,17 @@ if TYPE_CHECKING:
     from multilens.depths import linear_depths as linear_depths
     from multilens.depths import log_depths as log_depths
     from multilens.design import Design as Design
+    from multilens.fusion import Best as Best
+    from multilens.fusion import InverseVariance as InverseVariance
     from multilens.geometry.shape import disc as disc
     from multilens.geometry.shape import polygon as polygon
     from multilens.geometry.shape import rectangle as rectangle
     from multilens.layout import Layout as Layout
     from multilens.lens import Lens as Lens
+    from multilens.metrics import InverseDepth as InverseDepth
+    from multilens.metrics import MeanSquare as MeanSquare
+    from multilens.metrics import Relative as Relative
+    from multilens.metrics import WorstCase as WorstCase
     from multilens.penalty import area_penalty as area_penalty
     from multilens.penalty import distance_penalty as distance_penalty
     from multilens.problem import Problem as Problem
@@ -34,18 +40,24 @@ if TYPE_CHECKING:
 
 _HOME = {
     "Back": "back",
+    "Best": "fusion",
     "Bound": "bounds.bound",
     "Design": "design",
+    "InverseDepth": "metrics",
+    "InverseVariance": "fusion",
     "Layout": "layout",
     "Lens": "lens",
     "LensDefocus": "cues",
     "LimitedStereo": "cues",
+    "MeanSquare": "metrics",
     "PairLimits": "cues",
     "PairStereo": "cues",
     "Problem": "problem",
+    "Relative": "metrics",
     "Scene": "scene",
     "ScoreProblem": "score_problem",
     "Sensor": "sensor",
+    "WorstCase": "metrics",
     "area_penalty": "penalty",
     "disc": "geometry.shape",
     "distance_penalty": "penalty",

@@ -11,17 +11,20 @@ from torch import Tensor
 
 from multilens.back import Back
 from multilens.closed_form import ClosedForm, differentiable
-from multilens.cues import Cue, FactoredCue, LensDefocus, LimitedCue, Measurement, PairStereo
+from multilens.cues import Cue, LensDefocus, LimitedCue, Measurement, PairStereo
 from multilens.envelope import DepthMoments
+from multilens.fusion import Best, Fusion
 from multilens.layout import Layout
 from multilens.lens import Lens
-from multilens.numerics import least
+from multilens.metrics import MeanSquare, Metric
 from multilens.question import refuse_unless_lenses_and_gap
 
 
 @dataclass(frozen=True, eq=False)
 class Problem:
-    """Measure depth best: the weighted mean over the depths of the squared error of the best cue at each.
+    """Measure depth best: the least score, which a metric makes of the errors at all depths, and a fusion of what measures each.
+
+    As it is, that is the weighted mean over the depths of the squared error of the best cue at each.
 
     Args:
         back: where lenses may stand.
@@ -30,6 +33,8 @@ class Problem:
         weights: how much each depth counts, >= 0, any scale; None counts all alike.
         cues: ways to measure depth, at least one.
         gap: distance that the lenses' bodies keep from each other, mm, >= 0.
+        metric: which error of all depths counts.
+        fusion: how the measurements of one depth become one error.
         guess: standard deviation of what is known of a depth before it is measured, mm, > 0: see `prior_error`. None takes the
             spread of the depths where a cue may fail, and nothing where none does.
 
@@ -43,6 +48,8 @@ class Problem:
     weights: Float[Tensor, " z"]
     cues: tuple[Cue, ...]
     gap: float
+    metric: Metric
+    fusion: Fusion
     guess: float | None
 
     def __init__(
@@ -53,6 +60,8 @@ class Problem:
         weights: Tensor | Sequence[float] | None = None,
         cues: Sequence[Cue] = (PairStereo(), LensDefocus()),
         gap: float = 0.0,
+        metric: Metric = MeanSquare(),
+        fusion: Fusion = Best(),
         guess: float | None = None,
     ) -> None:
         depths = torch.as_tensor(depths, dtype=torch.float64)
@@ -74,7 +83,9 @@ class Problem:
         object.__setattr__(self, "weights", shares)
         object.__setattr__(self, "cues", tuple(cues))
         object.__setattr__(self, "gap", float(gap))
-        object.__setattr__(self, "guess", guess)
+        object.__setattr__(self, "metric", metric)
+        object.__setattr__(self, "fusion", fusion)
+        object.__setattr__(self, "guess", None if guess is None else float(guess))
 
     @property
     def focus_range(self) -> tuple[tuple[float, float], ...]:
@@ -112,43 +123,73 @@ class Problem:
 
     def measured(self, layout: Layout) -> Float[Tensor, "*batch"]:
         """Give the share of the depths, by weight, at which anything measures."""
-        return self._mean(self.errors(layout).isfinite().any(-2).to(layout.position))
+        known = self.errors(layout).isfinite().any(-2)
+        return (known * self.weights.to(layout.position)).sum(-1)
+
+    @cached_property
+    def score_weights(self) -> Float[Tensor, " z"]:
+        """What the squared error at each depth counts for in the score: its weight times the metric's factor."""
+        return self.weights * self.metric.factor(self.depths)
 
     def score(self, layout: Layout) -> Float[Tensor, "*batch"]:
-        """Give J, the weighted mean over the depths of the square of the least error, mm^2.
+        """Give J, the mean over the depths of the square of the least error, or what the metric and the fusion make of the errors.
 
         In closed form for the cues of the thesis (`multilens.envelope`), else over all depths; both agree up to rounding.
         """
-        if not self.is_envelope:
+        if not self.has_closed_form:
             return self.score_over_depths(layout)
         self._refuse_other_lenses(layout)
         return differentiable(self.closed_form(layout.position.device), layout)
 
     def score_over_depths(self, layout: Layout) -> Float[Tensor, "*batch"]:
-        """Give the score by the error of every cue at every depth, as any cue allows; pairs of a factored cue count as one."""
-        return self._mean(self._with_prior(least(self._squares(layout, smooth=False))))
+        """Give the score by the error of every cue at every depth, as any cue allows."""
+        return self._weighted(self.squared_error(layout)).amax(-1)
 
-    def terms(self, layout: Layout) -> Float[Tensor, "*batch 1"]:
-        """Give what a search minimises: the score, of smooth errors where cues may fail, which are never less."""
-        if self.is_smooth:
+    def terms(self, layout: Layout) -> Float[Tensor, "*batch m"]:
+        """Give what a search minimises the largest of: the score, or the worst case depth by depth.
+
+        Where cues may fail it is that of their smooth errors, which are never less than those that are claimed.
+        """
+        if self.has_closed_form:
             return self.score(layout).unsqueeze(-1)
-        return self._mean(self._with_prior(least(self._squares(layout, smooth=True)))).unsqueeze(-1)
+        return self._weighted(self.squared_error(layout, smooth=True))
+
+    def mean_square(self, layout: Layout) -> Float[Tensor, "*batch"]:
+        """Give the weighted mean of the squared error, mm^2, whichever metric the score has."""
+        if isinstance(self.metric, MeanSquare):
+            return self.score(layout)
+        return (self.squared_error(layout) * self.weights.to(layout.position)).sum(-1)
+
+    def squared_error(
+        self, layout: Layout, depths: Float[Tensor, " m"] | None = None, smooth: bool = False
+    ) -> Float[Tensor, "*batch m"]:
+        """Give the square of the one error at each depth, of all that measures it and what is known before, mm^2.
+
+        Args:
+            layout: one or a batch, of this problem's lenses.
+            depths: mm, > 0; None takes the problem's.
+            smooth: whether a search asks; else it is what may be claimed.
+        """
+        self._refuse_other_lenses(layout)
+        depths = (self.depths if depths is None else depths).to(layout.position)
+        return self._with_prior(self.fusion.squared_error(self.cues, layout, self.lenses, depths, smooth))
 
     @cached_property
     def is_envelope(self) -> bool:
-        """Whether the cues are the thesis' alone, each at most once, so that the score has a closed form."""
+        """Whether at every depth the best of the thesis' cues counts, so that, divided by the depth, errors are a line and Vs."""
         kinds = [type(cue) for cue in self.cues]
-        return set(kinds) <= {PairStereo, LensDefocus} and len(kinds) == len(set(kinds)) and self.guess is None
+        known = set(kinds) <= {PairStereo, LensDefocus} and len(kinds) == len(set(kinds))
+        return known and isinstance(self.fusion, Best) and self.guess is None
 
     @cached_property
-    def is_smooth(self) -> bool:
-        """Whether no cue may fail, so that the score itself can be minimised."""
-        return not any(isinstance(cue, LimitedCue) for cue in self.cues)
+    def has_closed_form(self) -> bool:
+        """Whether the score is a sum over the depths of such errors: then there is a closed form, and a bound."""
+        return self.is_envelope and self.metric.is_mean
 
     def closed_form(self, device: torch.device) -> ClosedForm:
-        """Give the score with its gradient as one function; only for the thesis' cues, `is_envelope`."""
+        """Give the score with its gradient as one function; only where `has_closed_form`."""
         if device not in self._closed_forms:
-            moments = DepthMoments(self.depths, self.weights).to(device)
+            moments = DepthMoments(self.depths, self.score_weights).to(device)
             self._closed_forms[device] = ClosedForm(self.lenses, self.cues, moments)
         return self._closed_forms[device]
 
@@ -156,22 +197,12 @@ class Problem:
     def _closed_forms(self) -> dict[torch.device, ClosedForm]:
         return {}
 
-    def _squares(self, layout: Layout, smooth: bool) -> Float[Tensor, "*batch c z"]:
-        """Give the squared errors; of a factored cue only the least, one curve for all its measurements."""
-        self._refuse_other_lenses(layout)
-        depths = self.depths.to(layout.position)
-        squares = []
-        for cue in self.cues:
-            if not cue.measurements(self.lenses):
-                continue
-            if isinstance(cue, FactoredCue):
-                gain = cue.gain(layout, self.lenses).amin(-1, keepdim=True)
-                squares.append((gain * cue.shape(depths)).square().unsqueeze(-2))
-            elif smooth and isinstance(cue, LimitedCue):
-                squares.append(cue.smooth(layout, self.lenses, depths).square())
-            else:
-                squares.append(cue(layout, self.lenses, depths).square())
-        return torch.cat(squares, dim=-2)
+    def _weighted(self, square: Float[Tensor, "*batch z"]) -> Float[Tensor, "*batch m"]:
+        """Give the terms of the score: their mean, or all of which the largest counts."""
+        if self.metric.is_mean:
+            return (square * self.score_weights.to(square)).sum(-1, keepdim=True)
+        counted = self.weights > 0
+        return square[..., counted] * self.metric.factor(self.depths[counted]).to(square)
 
     def _with_prior(self, square: Float[Tensor, "*batch z"]) -> Float[Tensor, "*batch z"]:
         """Give the squared error of measurement and guess together, 1 / (1/e^2 + 1/g^2)."""
@@ -190,6 +221,3 @@ class Problem:
                 f"layout must have {len(self.lenses)} lenses of {tiers} foci, the problem's, "
                 f"got {layout.count} of {layout.focus.shape[-1]}"
             )
-
-    def _mean(self, values: Float[Tensor, "*batch z"]) -> Float[Tensor, "*batch"]:
-        return (values * self.weights.to(values)).sum(-1)

@@ -1,6 +1,6 @@
 """Cues: what can be measured at a depth, by which lenses, and how far off the measured depth will be."""
 
-from multilens.cues.cue import Cue, FactoredCue, LimitedCue, Measurement
+from multilens.cues.cue import Cue, FactoredCue, FusedCue, LimitedCue, Measurement
 from multilens.cues.limited import LimitedStereo
 from multilens.cues.limits import PairLimits
 from multilens.cues.thesis import NANOMETRE, LensDefocus, PairStereo
@@ -10,6 +10,7 @@ __all__ = [
     "NANOMETRE",
     "Cue",
     "FactoredCue",
+    "FusedCue",
     "LensDefocus",
     "LimitedCue",
     "LimitedStereo",

@@ -59,8 +59,8 @@ class Seer:
         device = variables.low.device
         self.question, self.variables = question, variables
         self.limits = NearLimits(question, device)
-        envelope = isinstance(question, Problem) and question.is_envelope
-        self.closed_form = question.closed_form(device) if isinstance(question, Problem) and envelope else None
+        known = isinstance(question, Problem) and question.has_closed_form
+        self.closed_form = question.closed_form(device) if isinstance(question, Problem) and known else None
         self.unit = question.back.size / 4
         """mm"""
         self.scale: float | None = None
