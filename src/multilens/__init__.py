@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from multilens.depths import linear_depths as linear_depths
     from multilens.depths import log_depths as log_depths
     from multilens.design import Design as Design
+    from multilens.field_of_view import Field as Field
     from multilens.fusion import Best as Best
     from multilens.fusion import InverseVariance as InverseVariance
     from multilens.geometry.shape import disc as disc
@@ -45,6 +46,7 @@ _HOME = {
     "Design": "design",
     "InverseDepth": "metrics",
     "InverseVariance": "fusion",
+    "Field": "field_of_view",
     "Layout": "layout",
     "Lens": "lens",
     "LensDefocus": "cues",
