@@ -95,3 +95,19 @@ def test_round_outlines_need_a_convex_core(core):
 @pytest.mark.parametrize("shape", [rectangle(10, 20, corner=3), rectangle(10, 20, corner=5), disc((0.0, 0.0), 4.0)])
 def test_round_outlines_of_a_convex_core_are_accepted(shape):
     assert Back(shape).outline == shape
+
+
+def test_a_scaled_back_keeps_its_middle_and_its_proportions():
+    outline = Back(rectangle(10, 20, centre=(50, 70), corner=2)).scaled(1.5).outline
+    assert outline == rectangle(15, 30, centre=(50, 70), corner=3)
+
+
+def test_what_stands_on_a_scaled_back_stays():
+    back = Back(SQUARE).keep_out("logo", disc((60, 60), 4), clearance=1)
+    assert back.scaled(0.5).keep_outs == back.keep_outs
+
+
+@pytest.mark.parametrize("factor", [0.0, -1.0, nan, inf])
+def test_a_back_is_scaled_by_positive_numbers(factor: float):
+    with pytest.raises(ValueError, match="factor must be > 0 and finite"):
+        Back(SQUARE).scaled(factor)

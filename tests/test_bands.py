@@ -5,10 +5,11 @@ import torch
 
 from multilens.back import Back
 from multilens.bands import dense_depths, winner_bands
+from multilens.depths import linear_depths, log_depths
 from multilens.layout import Layout
 from multilens.lens import Lens
 from multilens.optics.defocus import defocus_band
-from multilens.problem import Problem, linear_depths, log_depths
+from multilens.problem import Problem
 
 LENS = Lens(6.0, (0.5, 4.0), focus=(100, 10000))
 BACK = Back.rectangle(100, 100)

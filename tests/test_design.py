@@ -8,11 +8,13 @@ import torch
 from multilens.back import Back
 from multilens.certificate import Certificate, Clearance, certify
 from multilens.convergence import Convergence
+from multilens.depths import log_depths
 from multilens.design import INFEASIBLE, Design
 from multilens.geometry.shape import disc
 from multilens.layout import Layout
 from multilens.lens import Lens
-from multilens.problem import Problem, ScoreProblem, log_depths
+from multilens.problem import Problem
+from multilens.score_problem import ScoreProblem
 from multilens.search.solve import solve
 from multilens.storage import Origin
 
@@ -135,7 +137,7 @@ def set_at(*path_and_value):
         (set_at("schema_version", 2), "schema_version must be 1, got 2"),
         (set_at("score", 1.0), "score must be the layout's, "),
         (set_at("rmse", 1.0), "rmse must be the layout's, "),
-        (set_at("status", "infeasible"), "status must be one of complete, time limit, got 'infeasible'"),
+        (set_at("status", "infeasible"), "status must be one of complete, time limit, as given, got 'infeasible'"),
         (set_at("units", "length", "m"), "units must be {'length': 'mm'"),
         (set_at("layout", 0, "aperture_radius", 2.5), "layout must be feasible, got aperture of lens 1 lacking 0.5 mm"),
         (set_at("layout", 0, "position", [35.0, 30.0]), "layout must be feasible, got lens 1 to flash lacking "),

@@ -21,12 +21,20 @@ from multilens import Lens
         ("blur_noise", -1.0, "blur_noise must be > 0 and finite, got -1"),
         ("tiers", 0, "tiers must be a whole number >= 1, got 0"),
         ("position", (1.0, nan), "y of position must be finite, got nan"),
+        ("field_of_view_deg", 180.0, "field_of_view_deg must be > 0 and < 180 degrees, got 180"),
+        ("field_of_view_deg", nan, "field_of_view_deg must be > 0 and < 180 degrees, got nan"),
+        ("near_focus", 0.0, "near_focus must be > 0 and finite, got 0"),
     ],
 )
 def test_a_number_out_of_its_range_is_refused_by_name(key, value, message):
     arguments = {"focal_length": 6.0, "aperture_radius": (0.5, 2.0)} | {key: value}
     with pytest.raises(ValueError, match=message):
         Lens(**arguments)
+
+
+def test_a_lens_focuses_no_nearer_than_it_can():
+    with pytest.raises(ValueError, match="near_focus must be <= the nearest focus = 200 mm, got 300"):
+        Lens(6.0, (0.5, 2.0), focus=(200.0, 1000.0), near_focus=300.0)
 
 
 def test_a_lens_may_be_fixed_in_one_coordinate():

@@ -12,10 +12,11 @@ from multilens.back import Back
 from multilens.certificate import Certificate, Clearance
 from multilens.convergence import Convergence
 from multilens.cues import CUES, LensDefocus, PairStereo
+from multilens.depths import log_depths
 from multilens.geometry.shape import Shape, disc, polygon
 from multilens.layout import Layout
 from multilens.lens import Lens
-from multilens.problem import Problem, ScoreProblem, log_depths
+from multilens.problem import Problem
 from multilens.records import (
     back_record,
     certificate_record,
@@ -34,6 +35,7 @@ from multilens.records import (
     read_shape,
     shape_record,
 )
+from multilens.score_problem import ScoreProblem
 from multilens.storage import Origin
 
 

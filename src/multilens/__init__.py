@@ -12,36 +12,60 @@ if TYPE_CHECKING:
     from multilens.bounds.bound import Bound as Bound
     from multilens.bounds.bound import lower_bound as lower_bound
     from multilens.cues import LensDefocus as LensDefocus
+    from multilens.cues import LimitedStereo as LimitedStereo
+    from multilens.cues import PairLimits as PairLimits
     from multilens.cues import PairStereo as PairStereo
+    from multilens.depths import linear_depths as linear_depths
+    from multilens.depths import log_depths as log_depths
     from multilens.design import Design as Design
+    from multilens.field_of_view import Field as Field
+    from multilens.fusion import Best as Best
+    from multilens.fusion import InverseVariance as InverseVariance
     from multilens.geometry.shape import disc as disc
     from multilens.geometry.shape import polygon as polygon
     from multilens.geometry.shape import rectangle as rectangle
     from multilens.layout import Layout as Layout
     from multilens.lens import Lens as Lens
+    from multilens.metrics import InverseDepth as InverseDepth
+    from multilens.metrics import MeanSquare as MeanSquare
+    from multilens.metrics import Relative as Relative
+    from multilens.metrics import WorstCase as WorstCase
     from multilens.penalty import area_penalty as area_penalty
     from multilens.penalty import distance_penalty as distance_penalty
     from multilens.problem import Problem as Problem
-    from multilens.problem import ScoreProblem as ScoreProblem
-    from multilens.problem import linear_depths as linear_depths
-    from multilens.problem import log_depths as log_depths
+    from multilens.scene import Scene as Scene
+    from multilens.score_problem import ScoreProblem as ScoreProblem
+    from multilens.search.evaluate import evaluate as evaluate
     from multilens.search.solve import solve as solve
+    from multilens.sensor import Sensor as Sensor
 
 _HOME = {
     "Back": "back",
+    "Best": "fusion",
     "Bound": "bounds.bound",
     "Design": "design",
+    "InverseDepth": "metrics",
+    "InverseVariance": "fusion",
+    "Field": "field_of_view",
     "Layout": "layout",
     "Lens": "lens",
     "LensDefocus": "cues",
+    "LimitedStereo": "cues",
+    "MeanSquare": "metrics",
+    "PairLimits": "cues",
     "PairStereo": "cues",
     "Problem": "problem",
-    "ScoreProblem": "problem",
+    "Relative": "metrics",
+    "Scene": "scene",
+    "ScoreProblem": "score_problem",
+    "Sensor": "sensor",
+    "WorstCase": "metrics",
     "area_penalty": "penalty",
     "disc": "geometry.shape",
     "distance_penalty": "penalty",
-    "linear_depths": "problem",
-    "log_depths": "problem",
+    "evaluate": "search.evaluate",
+    "linear_depths": "depths",
+    "log_depths": "depths",
     "lower_bound": "bounds.bound",
     "polygon": "geometry.shape",
     "rectangle": "geometry.shape",

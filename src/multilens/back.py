@@ -1,6 +1,7 @@
 """The back of a device: where lenses may stand."""
 
 from dataclasses import dataclass, replace
+from math import isfinite
 
 from shapely.geometry.base import BaseGeometry
 
@@ -92,6 +93,19 @@ class Back:
         """
         added = KeepOut(name, _as_shape(f"keep-out {name}", shape), clearance)
         return replace(self, keep_outs=(*self.keep_outs, added))
+
+    def scaled(self, factor: float) -> "Back":
+        """Give this back with its outline grown or shrunk about the middle; keep-outs stay where and as large as they are.
+
+        Args:
+            factor: of all lengths of the outline, its round corners too, > 0.
+
+        Raises:
+            ValueError: the factor is out of its range.
+        """
+        if not (isfinite(factor) and factor > 0):
+            raise ValueError(f"factor must be > 0 and finite, got {factor:g}")
+        return replace(self, outline=self.outline.scaled(factor))
 
     def region(self) -> BaseGeometry:
         """Give where bodies may be as a plain polygon: the outline less each keep-out grown by its clearance; arcs are cut."""

@@ -12,7 +12,8 @@ from multilens.documents import document, document_content, read_text
 from multilens.fields import choice, number, record, text, whole_number
 from multilens.geometry.pairs import pair_distance, pair_indices
 from multilens.layout import Layout
-from multilens.problem import Problem, Question
+from multilens.problem import Problem
+from multilens.question import Question
 from multilens.records import (
     certificate_record,
     convergence_record,
@@ -27,7 +28,7 @@ from multilens.records import (
 )
 from multilens.storage import Origin, write_whole
 
-COMPLETE, OUT_OF_TIME, INFEASIBLE = "complete", "time limit", "infeasible"
+COMPLETE, OUT_OF_TIME, INFEASIBLE, GIVEN = "complete", "time limit", "infeasible", "as given"
 
 SCHEMA, SCHEMA_VERSION = "multilens.design", 1
 UNITS = {"length": "mm", "score": "mm^2", "rmse": "mm", "time": "s"}
@@ -46,7 +47,8 @@ class Design:
     Args:
         problem: what was asked.
         layout: one layout in float64, as stored.
-        status: "complete", "time limit" (the best when time ran out) or "infeasible".
+        status: "complete", "time limit" (the best when time ran out), "infeasible", or "as given" for a layout that was not
+            searched for: it is scored even where it breaks a constraint, as hardware that exists may.
         reason: why it is infeasible; empty otherwise.
         certificate: every constraint, checked exactly.
         convergence: of the starts; None for a layout that was not searched for.
@@ -66,12 +68,12 @@ class Design:
     @property
     def feasible(self) -> bool:
         """Whether the layout keeps every constraint, exactly."""
-        return self.status != INFEASIBLE
+        return self.certificate.feasible if self.status == GIVEN else self.status != INFEASIBLE
 
     @property
     def score(self) -> float:
         """Exact score, mm^2 (for a score of one's own, in its unit); NaN if infeasible."""
-        return self.problem.terms(self.layout).amax(-1).item() if self.feasible else nan
+        return self.problem.score(self.layout).item() if self.status != INFEASIBLE else nan
 
     @property
     def rmse(self) -> float:
@@ -153,7 +155,7 @@ class Design:
 
     def to_json(self) -> str:
         """Give the text that `save` writes; raises what it raises, save for the OSError."""
-        if not self.feasible:
+        if self.status == INFEASIBLE:
             raise ValueError(f"design must be feasible to be saved: {self.reason}")
         content = {
             "units": UNITS,
@@ -194,7 +196,7 @@ class Design:
         fields = record(content, "design", keys)
         if fields["units"] != UNITS:
             raise ValueError(f"units must be {UNITS}, got {fields['units']!r:.80}")
-        status = choice(fields["status"], "status", (COMPLETE, OUT_OF_TIME))
+        status = choice(fields["status"], "status", (COMPLETE, OUT_OF_TIME, GIVEN))
         problem = read_problem(fields["problem"], "problem")
         layout = read_layout(fields["layout"], "layout", problem.lenses)
         certificate = certify(problem.back, problem.lenses, problem.focus_range, layout, problem.gap)
@@ -212,7 +214,7 @@ class Design:
         return design
 
     def __str__(self) -> str:
-        if not self.feasible:
+        if self.status == INFEASIBLE:
             return f"{self.status}: {self.reason}"
         head = ("lens", "x (mm)", "y (mm)", "aperture radius (mm)", "f-number", "focus (mm)")
         rows = [
@@ -271,7 +273,7 @@ def _read_bound(value: object, name: str) -> Bound:
 
 def _refuse_unless_it_holds(design: Design, fields: dict[str, Any]) -> None:
     """Hold what a file claims against what its layout gives."""
-    if not design.certificate.feasible:
+    if not design.certificate.feasible and design.status != GIVEN:
         tightest = design.certificate.tightest
         raise ValueError(f"layout must be feasible, got {tightest.what} lacking {-tightest.room:.4g} mm")
     for name, actual in (("score", design.score), ("rmse", design.rmse)):

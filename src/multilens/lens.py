@@ -4,6 +4,9 @@ from dataclasses import dataclass
 from math import isfinite
 from typing import Any
 
+from multilens.ranges import refuse_unless_positive, refuse_unless_range
+from multilens.sensor import Sensor
+
 
 @dataclass(frozen=True)
 class Lens:
@@ -21,6 +24,11 @@ class Lens:
         tiers: sensors behind the one aperture, each with a focus of its own (a jumping spider's eye has 4), >= 1.
         position: None for a free lens, (x, y) in mm for a locked one, and None in place of one coordinate for a lens that
             slides along a line.
+        field_of_view_deg: angle of the whole cone that the lens sees, from side to side, degrees, > 0 and < 180; None where it
+            is unknown, which limits nothing.
+        near_focus: nearest depth that the lens can bring into focus, and that it is trusted to measure, mm, > 0 and no more than
+            the nearest of `focus`; None where it is unknown, which limits nothing.
+        sensor: what stands behind the lens; None where it is unknown, which is enough for every cue but the photometric ones.
 
     Raises:
         ValueError: a number is out of its range.
@@ -34,16 +42,19 @@ class Lens:
     blur_noise: float = 1.0
     tiers: int = 1
     position: tuple[float | None, float | None] | None = None
+    field_of_view_deg: float | None = None
+    near_focus: float | None = None
+    sensor: Sensor | None = None
 
     def __post_init__(self) -> None:
-        _refuse_unless_positive("focal_length", self.focal_length)
-        _refuse_unless_range("aperture_radius", self.aperture_radius)
+        refuse_unless_positive("focal_length", self.focal_length)
+        refuse_unless_range("aperture_radius", self.aperture_radius)
         if self.focus is not None:
-            _refuse_unless_range("focus", self.focus)
+            refuse_unless_range("focus", self.focus)
         if not isfinite(self.clearance) or self.clearance < 0:
             raise ValueError(f"clearance must be >= 0 mm and finite, got {self.clearance:g}")
-        _refuse_unless_positive("disparity_noise", self.disparity_noise)
-        _refuse_unless_positive("blur_noise", self.blur_noise)
+        refuse_unless_positive("disparity_noise", self.disparity_noise)
+        refuse_unless_positive("blur_noise", self.blur_noise)
         if not isinstance(self.tiers, int) or self.tiers < 1:
             raise ValueError(f"tiers must be a whole number >= 1, got {self.tiers}")
         if self.position is not None and len(self.position) != 2:
@@ -51,6 +62,16 @@ class Lens:
         for name, coordinate in zip("xy", self.position or (), strict=False):
             if coordinate is not None and not isfinite(coordinate):
                 raise ValueError(f"{name} of position must be finite, got {coordinate:g}")
+        self._refuse_unless_limits()
+
+    def _refuse_unless_limits(self) -> None:
+        angle, near = self.field_of_view_deg, self.near_focus
+        if angle is not None and not 0 < angle < 180:
+            raise ValueError(f"field_of_view_deg must be > 0 and < 180 degrees, got {angle:g}")
+        if near is not None:
+            refuse_unless_positive("near_focus", near)
+            if self.focus is not None and self.focus[0] < near:
+                raise ValueError(f"near_focus must be <= the nearest focus = {self.focus[0]:g} mm, got {near:g}")
 
     @classmethod
     def from_f_number(cls, focal_length: float, f_number: tuple[float, float], **others: Any) -> "Lens":
@@ -67,8 +88,8 @@ class Lens:
         Reference:
             Thesis, equation 5.1.
         """
-        _refuse_unless_positive("focal_length", focal_length)
-        _refuse_unless_range("f_number", f_number)
+        refuse_unless_positive("focal_length", focal_length)
+        refuse_unless_range("f_number", f_number)
         fastest, slowest = f_number
         return cls(focal_length, (focal_length / (2 * slowest), focal_length / (2 * fastest)), **others)
 
@@ -76,18 +97,3 @@ class Lens:
     def least_body_radius(self) -> float:
         """Radius of the disc that the lens needs even at its smallest aperture, mm."""
         return self.aperture_radius[0] + self.clearance
-
-
-def _refuse_unless_positive(name: str, value: float) -> None:
-    if not isfinite(value) or value <= 0:
-        raise ValueError(f"{name} must be > 0 and finite, got {value:g}")
-
-
-def _refuse_unless_range(name: str, value: tuple[float, float]) -> None:
-    if len(value) != 2:
-        raise ValueError(f"{name} must be two numbers, least and largest, got {len(value)}")
-    least, largest = value
-    _refuse_unless_positive(f"least {name}", least)
-    _refuse_unless_positive(f"largest {name}", largest)
-    if least > largest:
-        raise ValueError(f"{name} must have least <= largest, got {least:g} > {largest:g}")

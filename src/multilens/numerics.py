@@ -1,4 +1,4 @@
-"""A minimum and a smooth maximum, and what their gradients do."""
+"""A minimum, a smooth maximum and a smooth step, and what their gradients do."""
 
 from typing import Any
 
@@ -44,3 +44,12 @@ def soft_maximum(values: Float[Tensor, "*batch m"], width: float) -> Float[Tenso
         The smooth maximum, in the unit of the values.
     """
     return (values / width).logsumexp(-1) * width
+
+
+def smooth_step(values: Float[Tensor, "..."]) -> Float[Tensor, "..."]:
+    """Give 0 up to 0, 1 from 1 on, and x^2 (3 - 2 x) between them.
+
+    Its gradient is continuous: 0 outside, 6 x (1 - x) between.
+    """
+    within = values.clamp(0, 1)
+    return within.square() * (3 - 2 * within)

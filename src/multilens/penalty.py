@@ -15,7 +15,7 @@ from multilens.constraints import body_radius, pair_room, quick_room
 from multilens.geometry.overlap import outside_area, overlap_area
 from multilens.geometry.pairs import pair_indices
 from multilens.layout import Layout
-from multilens.problem import Question
+from multilens.question import Question
 
 Price = Callable[[Layout], Tensor]
 """From layouts to one number >= 0 each, [*batch], differentiable in positions and radii."""

@@ -1,10 +1,9 @@
-"""The question: where, with which lenses, for which depths, and how an answer is scored."""
+"""The question of a depth sensor: where, with which lenses, for which depths, and how an answer is scored."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from math import isfinite
-from typing import Protocol, runtime_checkable
 
 import torch
 from jaxtyping import Float, Int
@@ -12,78 +11,20 @@ from torch import Tensor
 
 from multilens.back import Back
 from multilens.closed_form import ClosedForm, differentiable
-from multilens.cues import Cue, FactoredCue, LensDefocus, Measurement, PairStereo
+from multilens.cues import Cue, LensDefocus, LimitedCue, Measurement, PairStereo
 from multilens.envelope import DepthMoments
+from multilens.fusion import Best, Fusion
 from multilens.layout import Layout
 from multilens.lens import Lens
-from multilens.numerics import least
-
-
-def linear_depths(near: float, far: float, count: int = 512) -> Float[Tensor, " z"]:
-    """Give depths evenly spaced from near to far, both included.
-
-    Args:
-        near: mm, > 0.
-        far: mm, > near.
-        count: how many, >= 2.
-
-    Raises:
-        ValueError: a number is out of its range.
-    """
-    _refuse_unless_depth_range(near, far, count)
-    return torch.linspace(near, far, count, dtype=torch.float64)
-
-
-def log_depths(near: float, far: float, count: int = 512) -> Float[Tensor, " z"]:
-    """Give depths from near to far, both included, each the same factor beyond the last.
-
-    Args:
-        near: mm, > 0.
-        far: mm, > near.
-        count: how many, >= 2.
-
-    Raises:
-        ValueError: a number is out of its range.
-    """
-    _refuse_unless_depth_range(near, far, count)
-    depths = near * (far / near) ** torch.linspace(0, 1, count, dtype=torch.float64)
-    # Rounding would put the ends beside what was asked for.
-    depths[0], depths[-1] = near, far
-    return depths
-
-
-@runtime_checkable
-class Question(Protocol):
-    """What the search needs to know: the constraints, and the score as a differentiable function of the layout."""
-
-    @property
-    def back(self) -> Back:
-        """Where lenses may stand."""
-        ...
-
-    @property
-    def lenses(self) -> tuple[Lens, ...]:
-        """What is known of each lens."""
-        ...
-
-    @property
-    def gap(self) -> float:
-        """Distance that bodies keep from each other, mm."""
-        ...
-
-    @property
-    def focus_range(self) -> tuple[tuple[float, float], ...]:
-        """Nearest and farthest in-focus depth of each lens, mm."""
-        ...
-
-    def terms(self, layout: Layout) -> Float[Tensor, "*batch m"]:
-        """Give the numbers of which the largest is the score, differentiable by autograd."""
-        ...
+from multilens.metrics import MeanSquare, Metric
+from multilens.question import refuse_unless_lenses_and_gap
 
 
 @dataclass(frozen=True, eq=False)
 class Problem:
-    """Measure depth best: the weighted mean over the depths of the squared error of the best cue at each.
+    """Measure depth best: the least score, which a metric makes of the errors at all depths, and a fusion of what measures each.
+
+    As it is, that is the weighted mean over the depths of the squared error of the best cue at each.
 
     Args:
         back: where lenses may stand.
@@ -92,6 +33,10 @@ class Problem:
         weights: how much each depth counts, >= 0, any scale; None counts all alike.
         cues: ways to measure depth, at least one.
         gap: distance that the lenses' bodies keep from each other, mm, >= 0.
+        metric: which error of all depths counts.
+        fusion: how the measurements of one depth become one error.
+        guess: standard deviation of what is known of a depth before it is measured, mm, > 0: see `prior_error`. None takes the
+            spread of the depths where a cue may fail, and nothing where none does.
 
     Raises:
         ValueError: something is missing, of the wrong length or out of its range.
@@ -103,6 +48,9 @@ class Problem:
     weights: Float[Tensor, " z"]
     cues: tuple[Cue, ...]
     gap: float
+    metric: Metric
+    fusion: Fusion
+    guess: float | None
 
     def __init__(
         self,
@@ -112,16 +60,21 @@ class Problem:
         weights: Tensor | Sequence[float] | None = None,
         cues: Sequence[Cue] = (PairStereo(), LensDefocus()),
         gap: float = 0.0,
+        metric: Metric = MeanSquare(),
+        fusion: Fusion = Best(),
+        guess: float | None = None,
     ) -> None:
         depths = torch.as_tensor(depths, dtype=torch.float64)
         weights = torch.ones_like(depths) if weights is None else torch.as_tensor(weights, dtype=torch.float64)
-        _refuse_unless_lenses_and_gap(lenses, gap)
+        refuse_unless_lenses_and_gap(lenses, gap)
         if depths.ndim != 1 or not (depths.isfinite() & (depths > 0)).all() or not len(depths):
             raise ValueError("depths must be one row of finite numbers > 0 mm")
         if weights.shape != depths.shape or not (weights.isfinite() & (weights >= 0)).all() or not weights.sum() > 0:
             raise ValueError(f"weights must be {len(depths)} finite numbers >= 0, not all 0, one for each depth")
         if not sum(len(cue.measurements(lenses)) for cue in cues):
             raise ValueError("cues must give at least one measurement with these lenses, got none")
+        if guess is not None and not (isfinite(guess) and guess > 0):
+            raise ValueError(f"guess must be > 0 mm and finite, got {guess:g}")
         object.__setattr__(self, "back", back)
         object.__setattr__(self, "lenses", tuple(lenses))
         object.__setattr__(self, "depths", depths)
@@ -130,6 +83,9 @@ class Problem:
         object.__setattr__(self, "weights", shares)
         object.__setattr__(self, "cues", tuple(cues))
         object.__setattr__(self, "gap", float(gap))
+        object.__setattr__(self, "metric", metric)
+        object.__setattr__(self, "fusion", fusion)
+        object.__setattr__(self, "guess", None if guess is None else float(guess))
 
     @property
     def focus_range(self) -> tuple[tuple[float, float], ...]:
@@ -142,8 +98,21 @@ class Problem:
         """What can be measured, in the order of the errors' k."""
         return tuple(measurement for cue in self.cues for measurement in cue.measurements(self.lenses))
 
+    @cached_property
+    def prior_error(self) -> float | None:
+        """Error of a depth that nothing measures, mm; None where no cue can fail and no guess is given.
+
+        Unless it is given, it is the standard deviation of the depths: the error of one who knows them and always says their
+        mean. A single depth has none; what is not measured is then wrong by the depth itself.
+        """
+        if self.guess is not None or not any(isinstance(cue, LimitedCue) for cue in self.cues):
+            return self.guess
+        mean = (self.weights * self.depths).sum()
+        spread = (self.weights * (self.depths - mean).square()).sum().sqrt()
+        return spread.item() if spread > 0 else mean.item()
+
     def errors(self, layout: Layout) -> Float[Tensor, "*batch k z"]:
-        """Give the depth error of every measurement at every depth, mm."""
+        """Give the depth error of every measurement at every depth, mm; infinite where a measurement fails."""
         self._refuse_other_lenses(layout)
         depths = self.depths.to(layout.position)
         return torch.cat([cue(layout, self.lenses, depths) for cue in self.cues], dim=-2)
@@ -152,30 +121,75 @@ class Problem:
         """Give the index of the measurement that is best at each depth; the first of equals."""
         return self.errors(layout).argmin(-2)
 
+    def measured(self, layout: Layout) -> Float[Tensor, "*batch"]:
+        """Give the share of the depths, by weight, at which anything measures."""
+        known = self.errors(layout).isfinite().any(-2)
+        return (known * self.weights.to(layout.position)).sum(-1)
+
+    @cached_property
+    def score_weights(self) -> Float[Tensor, " z"]:
+        """What the squared error at each depth counts for in the score: its weight times the metric's factor."""
+        return self.weights * self.metric.factor(self.depths)
+
     def score(self, layout: Layout) -> Float[Tensor, "*batch"]:
-        """Give J, the weighted mean over the depths of the square of the least error, mm^2.
+        """Give J, the mean over the depths of the square of the least error, or what the metric and the fusion make of the errors.
 
         In closed form for the cues of the thesis (`multilens.envelope`), else over all depths; both agree up to rounding.
         """
-        if not self.is_envelope:
+        if not self.has_closed_form:
             return self.score_over_depths(layout)
         self._refuse_other_lenses(layout)
         return differentiable(self.closed_form(layout.position.device), layout)
 
     def score_over_depths(self, layout: Layout) -> Float[Tensor, "*batch"]:
-        """Give the score by the error of every cue at every depth, as any cue allows; pairs of a factored cue count as one."""
-        return self._mean(least(self._squares(layout)))
+        """Give the score by the error of every cue at every depth, as any cue allows."""
+        return self._weighted(self.squared_error(layout)).amax(-1)
+
+    def terms(self, layout: Layout) -> Float[Tensor, "*batch m"]:
+        """Give what a search minimises the largest of: the score, or the worst case depth by depth.
+
+        Where cues may fail it is that of their smooth errors, which are never less than those that are claimed.
+        """
+        if self.has_closed_form:
+            return self.score(layout).unsqueeze(-1)
+        return self._weighted(self.squared_error(layout, smooth=True))
+
+    def mean_square(self, layout: Layout) -> Float[Tensor, "*batch"]:
+        """Give the weighted mean of the squared error, mm^2, whichever metric the score has."""
+        if isinstance(self.metric, MeanSquare):
+            return self.score(layout)
+        return (self.squared_error(layout) * self.weights.to(layout.position)).sum(-1)
+
+    def squared_error(
+        self, layout: Layout, depths: Float[Tensor, " m"] | None = None, smooth: bool = False
+    ) -> Float[Tensor, "*batch m"]:
+        """Give the square of the one error at each depth, of all that measures it and what is known before, mm^2.
+
+        Args:
+            layout: one or a batch, of this problem's lenses.
+            depths: mm, > 0; None takes the problem's.
+            smooth: whether a search asks; else it is what may be claimed.
+        """
+        self._refuse_other_lenses(layout)
+        depths = (self.depths if depths is None else depths).to(layout.position)
+        return self._with_prior(self.fusion.squared_error(self.cues, layout, self.lenses, depths, smooth))
 
     @cached_property
     def is_envelope(self) -> bool:
-        """Whether the cues are the thesis' alone, each at most once, so that the score has a closed form."""
+        """Whether at every depth the best of the thesis' cues counts, so that, divided by the depth, errors are a line and Vs."""
         kinds = [type(cue) for cue in self.cues]
-        return set(kinds) <= {PairStereo, LensDefocus} and len(kinds) == len(set(kinds))
+        known = set(kinds) <= {PairStereo, LensDefocus} and len(kinds) == len(set(kinds))
+        return known and isinstance(self.fusion, Best) and self.guess is None
+
+    @cached_property
+    def has_closed_form(self) -> bool:
+        """Whether the score is a sum over the depths of such errors: then there is a closed form, and a bound."""
+        return self.is_envelope and self.metric.is_mean
 
     def closed_form(self, device: torch.device) -> ClosedForm:
-        """Give the score with its gradient as one function; only for the thesis' cues, `is_envelope`."""
+        """Give the score with its gradient as one function; only where `has_closed_form`."""
         if device not in self._closed_forms:
-            moments = DepthMoments(self.depths, self.weights).to(device)
+            moments = DepthMoments(self.depths, self.score_weights).to(device)
             self._closed_forms[device] = ClosedForm(self.lenses, self.cues, moments)
         return self._closed_forms[device]
 
@@ -183,24 +197,22 @@ class Problem:
     def _closed_forms(self) -> dict[torch.device, ClosedForm]:
         return {}
 
-    def terms(self, layout: Layout) -> Float[Tensor, "*batch 1"]:
-        """Give the score alone."""
-        return self.score(layout).unsqueeze(-1)
+    def _weighted(self, square: Float[Tensor, "*batch z"]) -> Float[Tensor, "*batch m"]:
+        """Give the terms of the score: their mean, or all of which the largest counts."""
+        if self.metric.is_mean:
+            return (square * self.score_weights.to(square)).sum(-1, keepdim=True)
+        counted = self.weights > 0
+        return square[..., counted] * self.metric.factor(self.depths[counted]).to(square)
 
-    def _squares(self, layout: Layout) -> Float[Tensor, "*batch c z"]:
-        """Give the squared errors; of a factored cue only the least, one curve for all its measurements."""
-        self._refuse_other_lenses(layout)
-        depths = self.depths.to(layout.position)
-        squares = []
-        for cue in self.cues:
-            if not cue.measurements(self.lenses):
-                continue
-            if isinstance(cue, FactoredCue):
-                gain = cue.gain(layout, self.lenses).amin(-1, keepdim=True)
-                squares.append((gain * cue.shape(depths)).square().unsqueeze(-2))
-            else:
-                squares.append(cue(layout, self.lenses, depths).square())
-        return torch.cat(squares, dim=-2)
+    def _with_prior(self, square: Float[Tensor, "*batch z"]) -> Float[Tensor, "*batch z"]:
+        """Give the squared error of measurement and guess together, 1 / (1/e^2 + 1/g^2)."""
+        if self.prior_error is None:
+            return square
+        prior = self.prior_error**2
+        # An infinite error would make the gradient NaN even where it is not used.
+        known = square.isfinite()
+        finite = square.where(known, 0)
+        return torch.where(known, finite / (1 + finite / prior), prior)
 
     def _refuse_other_lenses(self, layout: Layout) -> None:
         tiers = max(lens.tiers for lens in self.lenses)
@@ -209,63 +221,3 @@ class Problem:
                 f"layout must have {len(self.lenses)} lenses of {tiers} foci, the problem's, "
                 f"got {layout.count} of {layout.focus.shape[-1]}"
             )
-
-    def _mean(self, squared_error: Float[Tensor, "*batch z"]) -> Float[Tensor, "*batch"]:
-        return (squared_error * self.weights.to(squared_error)).sum(-1)
-
-
-@dataclass(frozen=True, eq=False)
-class ScoreProblem:
-    """Any score that can be computed from a layout, under the same constraints.
-
-    The largest circles that fit a square, for one, are `score=lambda layout: -layout.aperture_radius`: of several numbers the
-    largest counts, and it is minimised.
-
-    Args:
-        back: where lenses may stand.
-        lenses: what is known of each, at least one; a lens without bounds of focus has the focus 1 mm.
-        score: from a batch of layouts to a tensor [*batch] or [*batch, m], differentiable by autograd; less is better.
-        gap: distance that the lenses' bodies keep from each other, mm, >= 0.
-    """
-
-    back: Back
-    lenses: tuple[Lens, ...]
-    function: Callable[[Layout], Tensor]
-    gap: float
-
-    def __init__(self, back: Back, lenses: Sequence[Lens], score: Callable[[Layout], Tensor], gap: float = 0.0) -> None:
-        _refuse_unless_lenses_and_gap(lenses, gap)
-        object.__setattr__(self, "back", back)
-        object.__setattr__(self, "lenses", tuple(lenses))
-        object.__setattr__(self, "function", score)
-        object.__setattr__(self, "gap", float(gap))
-
-    @property
-    def focus_range(self) -> tuple[tuple[float, float], ...]:
-        """Nearest and farthest in-focus depth of each lens, mm."""
-        return tuple(lens.focus or (1.0, 1.0) for lens in self.lenses)
-
-    def terms(self, layout: Layout) -> Float[Tensor, "*batch m"]:
-        """Give the numbers of which the largest is the score."""
-        terms = self.function(layout)
-        return terms.unsqueeze(-1) if terms.ndim == layout.aperture_radius.ndim - 1 else terms
-
-    def score(self, layout: Layout) -> Float[Tensor, "*batch"]:
-        """Give the largest of the terms."""
-        return self.terms(layout).amax(-1)
-
-
-def _refuse_unless_depth_range(near: float, far: float, count: int) -> None:
-    if not (isfinite(near) and near > 0):
-        raise ValueError(f"near must be > 0 mm and finite, got {near:g}")
-    if not (isfinite(far) and far > near):
-        raise ValueError(f"far must be > near = {near:g} mm and finite, got {far:g}")
-    if not isinstance(count, int) or count < 2:
-        raise ValueError(f"count must be a whole number >= 2, got {count}")
-
-
-def _refuse_unless_lenses_and_gap(lenses: Sequence[Lens], gap: float) -> None:
-    if not lenses:
-        raise ValueError("lenses must be at least one, got none")
-    if not isfinite(gap) or gap < 0:
-        raise ValueError(f"gap must be >= 0 mm and finite, got {gap:g}")

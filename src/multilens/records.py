@@ -21,7 +21,8 @@ from multilens.fields import choice, items, number, numbers, record, text, whole
 from multilens.geometry.shape import Shape, checked_points
 from multilens.layout import Layout
 from multilens.lens import Lens
-from multilens.problem import Problem, Question
+from multilens.problem import Problem
+from multilens.question import Question
 from multilens.storage import Origin
 
 Record = dict[str, Any]

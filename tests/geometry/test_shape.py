@@ -178,3 +178,30 @@ def test_bounds_of_a_turned_capsule():
     # A line of length 20 at 60 degrees to x, grown by 1.
     shape = Shape(LineString([(0, 0), (20 * cos(pi / 3), 20 * cos(pi / 6))]), 1.0)
     assert shape.bounds == pytest.approx((-1, -1, 11, 1 + 10 * 3**0.5))
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_a_shape_holds_its_shrunken_self_where_shapely_says_so(random_region, seed: int):
+    whole = random_region(seed)
+    shape = Shape(whole if seed % 3 else whole.convex_hull)
+    # Corners that are hardly notched are no matter: shapely is asked with a little to spare, and so is the shape.
+    copies = [shape.scaled(factor).core for factor in (0.999, 0.99, 0.9, 0.7, 0.4, 0.1)]
+    within = all(shape.core.buffer(1e-6).contains(copy) for copy in copies)
+    assert shape.holds_its_shrunken_self == within
+
+
+@pytest.mark.parametrize(
+    ("shape", "holds"),
+    [
+        (disc((3.0, 4.0), 2.0), True),
+        (rectangle(10, 20, corner=3), True),
+        (rectangle(10, 20, corner=5), True),
+        (polygon([(0, 0), (9, 0), (9, 9), (5, 6), (0, 9)]), True),
+        (polygon([(0, 0), (9, 0), (9, 9), (8, 9), (8, 1), (0, 1)]), False),
+        (polygon(SQUARE, [[(4, 4), (6, 4), (6, 6), (4, 6)]]), False),
+        (Shape(MultiPolygon([shapely.box(0, 0, 1, 1), shapely.box(2, 0, 3, 1)])), False),
+    ],
+    ids=["disc", "rounded", "capsule", "shallow notch", "L", "hole", "parts"],
+)
+def test_plain_shapes_that_hold_their_shrunken_selves(shape: Shape, holds: bool):
+    assert shape.holds_its_shrunken_self == holds

@@ -4,10 +4,12 @@ import pytest
 import shapely
 
 from multilens.back import Back
+from multilens.depths import linear_depths, log_depths
 from multilens.geometry.shape import disc, rectangle
 from multilens.layout import Layout
 from multilens.lens import Lens
-from multilens.problem import Problem, ScoreProblem, linear_depths, log_depths
+from multilens.problem import Problem
+from multilens.score_problem import ScoreProblem
 
 NOISE = 0.2 * 1.22e-3
 FOCI = [4820, 3110, 2050, 1400, 930, 620, 410, 280, 350, 240, 700, 1100]

@@ -1,9 +1,10 @@
 import pytest
 
 from multilens.back import Back
+from multilens.depths import linear_depths
 from multilens.lens import Lens
 from multilens.plot.units import DepthUnit, depth_unit, significant
-from multilens.problem import Problem, linear_depths
+from multilens.problem import Problem
 
 MILLIMETRE, METRE = DepthUnit("mm", 1.0), DepthUnit("m", 1000.0)
 

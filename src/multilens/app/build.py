@@ -3,13 +3,16 @@
 import re
 from collections.abc import Callable, Sequence
 from copy import deepcopy
+from dataclasses import replace
 from math import isfinite
 from typing import TYPE_CHECKING, Any
 
 from omegaconf import DictConfig, OmegaConf, open_dict
 
+from multilens.app.cues import build_cues, check_cues
+from multilens.app.estimates import refuse_stray_estimates
 from multilens.app.refusal import RefusedError, one_line, refused_at
-from multilens.app.schema import BackConfig, Config, CueName, LensConfig, LensesConfig, ShapeConfig, ShapeKind, Spacing
+from multilens.app.schema import BackConfig, Config, LensConfig, LensesConfig, ShapeConfig, ShapeKind, Spacing
 from multilens.back import Back
 from multilens.geometry import shape
 from multilens.geometry.shape import Shape
@@ -54,15 +57,14 @@ def check(config: Config) -> None:
         raise RefusedError(f"name must be letters, digits, '.', '_' and '-' without '..', got {config.name!r}")
     build_back(config.back)
     build_lenses(config.lenses)
+    refuse_stray_estimates(config)
     near, far = config.depth.near, config.depth.far
     if not (isfinite(near) and near > 0):
         raise RefusedError(f"depth.near must be > 0 mm and finite, got {near:g}")
     if not (isfinite(far) and far > near):
         raise RefusedError(f"depth.far must be > depth.near = {near:g} mm and finite, got {far:g}")
     _refuse_unless_count("depth.count", config.depth.count, 2, MOST_DEPTHS)
-    if not config.cues.names or len(set(config.cues.names)) < len(config.cues.names):
-        given = ", ".join(cue.name for cue in config.cues.names) or "none"
-        raise RefusedError(f"cues.names must be at least one of stereo and defocus, each once, got {given}")
+    check_cues(config.cues)
     _refuse_unless_count("search.starts", config.search.starts, 1, MOST_STARTS)
     _refuse_unless_count("search.patience", config.search.patience, 0, MOST_STARTS)
     _refuse_unless_count("search.proof", config.search.proof, 0, MOST_BOXES)
@@ -99,11 +101,12 @@ def build_lenses(config: LensesConfig) -> tuple[Lens, ...]:
                 "lenses.each lists the lenses one by one: lenses.count and lenses.lens must be null beside it"
             )
         _refuse_unless_count("lenses.each: the number of lenses", len(config.each), 1, MOST_LENSES)
-        return tuple(_build_lens(f"lenses.each.{index}", lens) for index, lens in enumerate(config.each))
+        lenses = tuple(_build_lens(f"lenses.each.{index}", lens) for index, lens in enumerate(config.each))
+        return _placed(lenses, config.places)
     if config.lens is None or config.count is None:
         raise RefusedError("lenses must have count and lens, or each, got neither")
     _refuse_unless_count("lenses.count", config.count, 1, MOST_LENSES)
-    return (_build_lens("lenses.lens", config.lens),) * config.count
+    return _placed((_build_lens("lenses.lens", config.lens),) * config.count, config.places)
 
 
 def build_problem(config: Config) -> "Problem":
@@ -112,20 +115,35 @@ def build_problem(config: Config) -> "Problem":
     Raises:
         RefusedError: something is out of its range or does not go together.
     """
-    from multilens.cues import LensDefocus, PairStereo
-    from multilens.problem import Problem, linear_depths, log_depths
+    from multilens.depths import linear_depths, log_depths
+    from multilens.problem import Problem
 
-    cues = {CueName["stereo"]: PairStereo, CueName["defocus"]: LensDefocus}
     depths = {Spacing["linear"]: linear_depths, Spacing["log"]: log_depths}
     back, lenses = build_back(config.back), build_lenses(config.lenses)
     with refused_at("depth"):
         range_of_depths = depths[config.depth.spacing](config.depth.near, config.depth.far, config.depth.count)
     with refused_at("cues"):
-        named = [cues[name]() for name in config.cues.names]
-        return Problem(back, lenses, range_of_depths, cues=named, gap=config.lenses.gap)
+        return Problem(back, lenses, range_of_depths, cues=build_cues(config.cues), gap=config.lenses.gap)
+
+
+def _placed(lenses: tuple[Lens, ...], places: list[Any] | None) -> tuple[Lens, ...]:
+    """Give the lenses with the places in place of their own; null leaves a lens as it is."""
+    if places is None:
+        return lenses
+    if len(places) != len(lenses):
+        raise RefusedError(f"lenses.places must be one for each of the {len(lenses)} lenses, got {len(places)}")
+    pairs = enumerate(zip(lenses, places, strict=True))
+    with refused_at("lenses.places"):
+        return tuple(
+            lens if place is None else replace(lens, position=_point(f"lenses.places.{index}", place))
+            for index, (lens, place) in pairs
+        )
 
 
 def _build_lens(key: str, config: LensConfig) -> Lens:
+    if config.focal_length is None:
+        called = "" if config.name is None else f" ({config.name})"
+        raise RefusedError(f"{key}.focal_length{called} is unknown, no source gives it: set it, mm, got null")
     others: dict[str, Any] = {
         "clearance": config.clearance,
         "disparity_noise": config.disparity_noise,
@@ -133,6 +151,8 @@ def _build_lens(key: str, config: LensConfig) -> Lens:
         "tiers": config.tiers,
         "focus": None if config.focus is None else _pair(f"{key}.focus", config.focus),
         "position": None if config.position is None else _pair(f"{key}.position", config.position),
+        "field_of_view_deg": config.field_of_view_deg,
+        "near_focus": config.near_focus,
     }
     if (config.aperture_radius is None) == (config.f_number is None):
         given = "neither" if config.f_number is None else "both"

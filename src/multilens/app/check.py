@@ -50,10 +50,10 @@ def check_command_line(arguments: Namespace) -> None:
     refuse_wild_folders(arguments)
     with open_hydra(arguments), told_in_one_line():
         loader = config_loader()
-        overrides = _parsed(arguments.overrides, loader)
+        overrides = parsed(arguments.overrides, loader)
         config_name = arguments.config_name or CONFIG_NAME
         swept = [override for override in overrides if override.is_sweep_override()]
-        first = _composed(config_name, [_choices(override, loader)[0] for override in overrides])
+        first = composed(config_name, [_choices(override, loader)[0] for override in overrides])
         if not (arguments.multirun or (first.hydra.mode is not None and first.hydra.mode.name == "MULTIRUN")):
             for override in swept:
                 raise RefusedError(
@@ -64,10 +64,15 @@ def check_command_line(arguments: Namespace) -> None:
             _refuse_used_folder("hydra.sweep.dir", first)
             swept += _swept_in_files(first, loader)
         for line in _each_value(overrides, swept, loader):
-            build.check(build.typed(_composed(config_name, line)))
+            build.check(build.typed(composed(config_name, line)))
 
 
-def _parsed(lines: list[str], loader: ConfigLoader) -> list[Override]:
+def parsed(lines: list[str], loader: ConfigLoader) -> list[Override]:
+    """Give the overrides that lines of key=value stand for, once every key and option is known to exist.
+
+    Raises:
+        RefusedError: one is unknown, or would have something imported or called.
+    """
     overrides = OverridesParser.create(config_loader=loader).parse_overrides(lines)
     for override in overrides:
         if "_target_" in _line(override):
@@ -125,7 +130,7 @@ def _swept_in_files(config: DictConfig, loader: ConfigLoader) -> list[Override]:
     params = OmegaConf.select(config, "hydra.sweeper.params")
     if not isinstance(params, DictConfig) or "basic_sweeper" not in config.hydra.sweeper._target_:
         return []
-    return _parsed([f"{key}={value}" for key, value in params.items()], loader)
+    return parsed([f"{key}={value}" for key, value in params.items()], loader)
 
 
 def _each_value(overrides: list[Override], swept: list[Override], loader: ConfigLoader) -> Iterator[list[str]]:
@@ -136,7 +141,12 @@ def _each_value(overrides: list[Override], swept: list[Override], loader: Config
             yield list((base | {override.get_key_element(): line}).values())
 
 
-def _composed(config_name: str, lines: list[str]) -> DictConfig:
+def composed(config_name: str, lines: list[str]) -> DictConfig:
+    """Compose a configuration, Hydra's own part with it.
+
+    Raises:
+        RefusedError: Hydra's part would put files into the run folder, or have something imported or called.
+    """
     config = compose(config_name, lines, return_hydra_config=True)
     if config.hydra.output_subdir is not None:
         raise RefusedError(

@@ -30,6 +30,8 @@ def run_command(given: list[str]) -> int:
             if "--version" in given:
                 print(f"multilens {version('multilens')}")
                 return DONE
+            if given[:1] == ["evaluate"]:
+                return _evaluate(given[1:])
             return _plot(given[1:]) if given[:1] == ["plot"] else _design(given)
     except RefusedError as refusal:
         reason, code = refusal, BAD_INPUT
@@ -61,6 +63,12 @@ def _plot(given: list[str]) -> int:
         raise RefusedError(f"plot: {error}") from None
     _print_paths(sorted([*folder.glob("*.svg"), *folder.glob("*.png")]))
     return DONE
+
+
+def _evaluate(given: list[str]) -> int:
+    from multilens.app.evaluate import evaluate_command
+
+    return evaluate_command(given)
 
 
 def _print_paths(paths: list[Path]) -> None:

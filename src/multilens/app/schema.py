@@ -16,7 +16,7 @@ SCHEMA = "multilens_schema"
 ShapeKind = Enum("ShapeKind", ["rectangle", "rounded_rectangle", "disc", "polygon"])
 """The kinds of outline that a configuration can name."""
 
-CueName = Enum("CueName", ["stereo", "defocus"])
+CueName = Enum("CueName", ["stereo", "defocus", "limited_stereo"])
 """The cues that a configuration can name."""
 
 PenaltyName = Enum("PenaltyName", ["distance", "area"])
@@ -72,10 +72,12 @@ class BackConfig:
     Args:
         outline: of the back.
         keep_outs: by name.
+        estimates: which of these numbers no source gives, by their keys below the back, and what each rests on.
     """
 
     outline: ShapeConfig = field(default_factory=ShapeConfig)
     keep_outs: dict[str, KeepOutConfig] = field(default_factory=dict)
+    estimates: dict[str, str] = field(default_factory=dict)
 
 
 @dataclass
@@ -83,7 +85,7 @@ class LensConfig:
     """One kind of lens; what each field means is told by `multilens.lens.Lens`.
 
     Args:
-        focal_length: mm.
+        focal_length: mm; null where it is unknown, which is refused when the lens is needed.
         aperture_radius: least and largest, mm; or f_number instead.
         f_number: least and largest; or aperture_radius instead.
         focus: nearest and farthest in-focus depth, mm; null for the range of the depths.
@@ -92,9 +94,13 @@ class LensConfig:
         blur_noise: mm on the sensor.
         tiers: sensors behind the one aperture.
         position: x and y, mm, null for a free lens, null in place of one of them for a lens that slides.
+        field_of_view_deg: angle of the whole cone that the lens sees; null where unknown.
+        near_focus: nearest depth that the lens brings into focus, mm; null where unknown.
+        name: what the lens is called, such as tele.
+        estimates: which of these numbers no source gives, by their keys, and what each rests on.
     """
 
-    focal_length: float = MISSING
+    focal_length: float | None = MISSING
     aperture_radius: list[float] | None = None
     f_number: list[float] | None = None
     focus: list[float] | None = None
@@ -103,6 +109,10 @@ class LensConfig:
     blur_noise: float = 1.0
     tiers: int = 1
     position: list[float | None] | None = None
+    field_of_view_deg: float | None = None
+    near_focus: float | None = None
+    name: str | None = None
+    estimates: dict[str, str] = field(default_factory=dict)
 
 
 @dataclass
@@ -114,12 +124,17 @@ class LensesConfig:
         lens: what each of them is.
         each: the lenses one by one; then count and lens are null.
         gap: distance that bodies keep from each other, mm.
+        places: x and y of every lens, mm, in place of their positions; null leaves these as they are.
+        estimates: which of these numbers no source gives, by their keys below the lenses, and what each rests on.
     """
 
     count: int | None = None
     lens: LensConfig | None = None
     each: list[LensConfig] | None = None
     gap: float = 0.0
+    # Of lists within lists OmegaConf refuses whole numbers where it expects floats: `build` checks them instead.
+    places: list[Any] | None = None
+    estimates: dict[str, str] = field(default_factory=dict)
 
 
 @dataclass
@@ -140,14 +155,29 @@ class DepthConfig:
 
 
 @dataclass
+class PairLimitsConfig:
+    """When two lenses may measure depth together, beside what the lenses themselves cannot do.
+
+    Args:
+        max_disparity: largest shift that a matcher finds, mm on the sensor of the longer lens; null for any.
+        least_overlap: part of the narrower field of view that both lenses must see.
+    """
+
+    max_disparity: float | None = None
+    least_overlap: float = 0.0
+
+
+@dataclass
 class CuesConfig:
     """Ways to measure depth.
 
     Args:
-        names: of stereo and defocus, at least one.
+        names: at least one.
+        limits: of the pairs of limited_stereo.
     """
 
     names: list[CueName] = MISSING
+    limits: PairLimitsConfig = field(default_factory=PairLimitsConfig)
 
 
 @dataclass

@@ -11,7 +11,9 @@ from multilens.bounds.kinds import kinds_of
 from multilens.bounds.packing import Space
 from multilens.bounds.room import body_area, box_area
 from multilens.cues import LensDefocus, PairStereo
-from multilens.problem import Problem, Question
+from multilens.fusion import Best
+from multilens.problem import Problem
+from multilens.question import Question
 
 
 @dataclass(frozen=True)
@@ -52,6 +54,10 @@ def lower_bound(problem: Question, boxes: int = 4000, target: float = inf) -> Bo
     strange = [type(cue).__name__ for cue in problem.cues if type(cue) not in (PairStereo, LensDefocus)]
     if strange:
         return Bound(None, f"no bound is known for the cue {strange[0]}")
+    if not isinstance(problem.fusion, Best):
+        return Bound(None, f"no bound is known for the fusion {type(problem.fusion).__name__}")
+    if problem.guess is not None:
+        return Bound(None, "no bound is known where a guess stands in for what is not measured")
     kinds = kinds_of(problem)
     if kinds is None:
         return Bound(None, "no layout is feasible: a lens has no room even at its smallest aperture")
@@ -73,7 +79,7 @@ def lower_bound(problem: Question, boxes: int = 4000, target: float = inf) -> Bo
 
 
 def _depths(problem: Problem) -> Depths:
-    depth, weight = problem.depths.numpy(), problem.weights.numpy()
+    depth, weight = problem.depths.numpy(), problem.score_weights.numpy()
     order = np.argsort(depth, kind="stable")
     order = order[weight[order] > 0]
     return Depths(depth[order], weight[order])

@@ -72,3 +72,24 @@ class LimitedCue(Cue, Protocol):
     ) -> Float[Tensor, "*batch k z"]:
         """Give errors that are finite, differentiable and never less than those of `__call__` where these are finite."""
         ...
+
+
+@runtime_checkable
+class FusedCue(Cue, Protocol):
+    """A cue that knows what its measurements tell together, as those of many views of one point do, which share their noise.
+
+    Of a cue that does not say, all measurements count as independent: the sum of 1 / err^2.
+    """
+
+    def information(
+        self, layout: Layout, lenses: Sequence[Lens], depths: Float[Tensor, " z"], smooth: bool = False
+    ) -> Float[Tensor, "*batch z"]:
+        """Give one over the variance of the depth that all measurements give together, 1/mm^2, >= 0.
+
+        Args:
+            layout: where the lenses stand.
+            lenses: what is known of each.
+            depths: Z, mm, > 0.
+            smooth: whether a search asks, that wants a differentiable number; else what may be claimed.
+        """
+        ...

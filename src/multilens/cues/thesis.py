@@ -12,6 +12,7 @@ from multilens.geometry.pairs import pair_distance, pair_indices
 from multilens.layout import Layout
 from multilens.lens import Lens
 from multilens.optics.defocus import focused_sensitivity
+from multilens.optics.many_views import view_information
 from multilens.optics.stereo import pair_angular_noise
 
 NANOMETRE = 1e-6
@@ -53,6 +54,21 @@ class PairStereo:
     ) -> Float[Tensor, "*batch p z"]:
         """Give the depth error of every pair, mm."""
         return self.gain(layout, lenses).unsqueeze(-1) * self.shape(depths)
+
+    def precision(self, layout: Layout, lenses: Sequence[Lens]) -> Float[Tensor, "n 1"]:
+        """Give one over the variance of the direction in which each lens sees a point, rad^-2.
+
+        The noise of a lens is that of the difference of two such lenses, which has twice the variance of each.
+        """
+        return _column([2 * (lens.focal_length / lens.disparity_noise) ** 2 for lens in lenses], layout).unsqueeze(-1)
+
+    def information(
+        self, layout: Layout, lenses: Sequence[Lens], depths: Float[Tensor, " z"], smooth: bool = False
+    ) -> Float[Tensor, "*batch z"]:
+        """Give what all lenses tell together as views of one point, 1/mm^2; one pair gives 1 / err^2."""
+        baseline = pair_distance(layout.position).clamp(min=NANOMETRE)
+        of_inverse = view_information(baseline, self.precision(layout, lenses))
+        return of_inverse / depths**4
 
 
 @dataclass(frozen=True)

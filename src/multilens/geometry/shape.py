@@ -9,6 +9,7 @@ import numpy as np
 import shapely
 from jaxtyping import Float
 from shapely import LineString, MultiPolygon, Point, Polygon
+from shapely.affinity import scale
 from shapely.geometry.base import BaseGeometry
 
 from multilens.geometry.nearest import distance_to_nearest
@@ -91,6 +92,27 @@ class Shape:
         """Least x, least y, largest x and largest y, mm, exact."""
         left, top, right, bottom = self.core.bounds
         return left - self.radius, top - self.radius, right + self.radius, bottom + self.radius
+
+    @property
+    def middle(self) -> tuple[float, float]:
+        """Give x and y of the middle of the bounding box, mm."""
+        left, top, right, bottom = self.bounds
+        return (left + right) / 2, (top + bottom) / 2
+
+    def scaled(self, factor: float) -> "Shape":
+        """Give the shape grown or shrunk about its middle, round corners too; factor > 0."""
+        return Shape(scale(self.core, factor, factor, origin=self.middle), self.radius * factor)
+
+    @property
+    def holds_its_shrunken_self(self) -> bool:
+        """Whether the shape shrunk about its middle lies within it, by any factor: the middle sees every point of it.
+
+        The rings of the core then run around the middle all one way, up to a billionth of the shape's size.
+        """
+        start, end = np.moveaxis(self.segments - np.asarray(self.middle), 1, 0)
+        turn = start[:, 0] * end[:, 1] - start[:, 1] * end[:, 0]
+        slack = 1e-9 * np.abs(self.segments - np.asarray(self.middle)).max() ** 2
+        return bool((turn >= -slack).all() or (turn <= slack).all())
 
 
 def refuse_wild_coordinates(coordinates: Float[np.ndarray, "m 2"]) -> None:

@@ -31,7 +31,8 @@ from multilens.plot.style import (
     tint,
 )
 from multilens.plot.units import significant
-from multilens.problem import Problem, Question
+from multilens.problem import Problem
+from multilens.question import Question
 
 MARGIN = 30.0
 """Around the back, points: room for a label that finds none on it."""

@@ -14,7 +14,8 @@ from multilens.plot.convergence import draw_convergence
 from multilens.plot.errors import draw_errors, draw_winners
 from multilens.plot.style import FONT_SIZE, TITLE_FONT_SIZE, WARNING, style
 from multilens.plot.units import depth_unit, significant
-from multilens.problem import Problem, Question
+from multilens.problem import Problem
+from multilens.question import Question
 
 DOTS_PER_INCH = 200
 """Of the PNG files."""
@@ -45,7 +46,7 @@ def design_figures(problem: Question, layout: Layout, convergence: Convergence |
             _draw_errors_and_winners(figures["errors"], problem, layout, 0.95, 7.75)
         if convergence is not None:
             figures["convergence"] = _figure(problem, layout, SHEET)
-            score = problem.terms(layout).amax(-1).item()
+            score = problem.score(layout).item()
             draw_convergence(_axes(figures["convergence"], 0.95, 0.75, 7.75, 4.85), convergence, score)
     return figures
 
@@ -93,7 +94,7 @@ def save_figures(figures: Mapping[str, Figure], folder: Path | str) -> tuple[Pat
 def title(problem: Question, layout: Layout) -> str:
     """Say in one line how many lenses there are and how well they do over which depths."""
     lenses = "1 lens" if layout.count == 1 else f"{layout.count} lenses"
-    score = problem.terms(layout).amax(-1).item()
+    score = problem.score(layout).item()
     if not isinstance(problem, Problem):
         return f"{lenses}, score {significant(score, 6)}"
     near, far = problem.depths.min().item(), problem.depths.max().item()

@@ -10,7 +10,8 @@ from multilens.optics.thin_lens import f_number
 from multilens.plot.canvas import Canvas, text_size
 from multilens.plot.style import FAINT, RULE, ink_on, lens_colour, tint
 from multilens.plot.units import depth_unit, significant
-from multilens.problem import Problem, Question
+from multilens.problem import Problem
+from multilens.question import Question
 
 FOCI_IN_A_LINE = 4
 

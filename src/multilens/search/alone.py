@@ -5,7 +5,8 @@ import torch
 from jaxtyping import Float
 
 from multilens.cues import NANOMETRE
-from multilens.problem import Problem, Question
+from multilens.problem import Problem
+from multilens.question import Question
 from multilens.search.limits import Limits
 from multilens.search.variables import Variables
 
@@ -33,7 +34,7 @@ class Alone:
         self.low, self.start = variables.low.numpy(), variables.focus_start
         self.columns = np.arange(self.n)
         self.terms = self._by_autograd
-        if isinstance(question, Problem) and question.is_envelope:
+        if isinstance(question, Problem) and question.has_closed_form:
             self.terms = self._over_depths
             known = question.closed_form(torch.device("cpu"))
             self.noise = known.noise.numpy() if len(known.first) else np.empty(0)
@@ -41,7 +42,7 @@ class Alone:
             self.slope_times_radius = known.slope_times_radius.numpy()
             self.focus_of = variables.tier_of.numpy()[self.lens, self.tier]
             self.depths = question.depths.numpy()
-            self.weights = question.weights.numpy() * self.depths**2
+            self.weights = question.score_weights.numpy() * self.depths**2
 
     def room(self, x: Float[np.ndarray, " d"]) -> ValueAndGradient:
         """Give the room left at the pairs and edges that are near, mm, and its gradient."""

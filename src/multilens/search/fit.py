@@ -9,7 +9,7 @@ from shapely import maximum_inscribed_circle
 
 from multilens.back import Back
 from multilens.constraints import ExactRoom, room_at
-from multilens.problem import Question
+from multilens.question import Question
 
 ARC = 1e-4
 """Part of the back's diagonal by which its region is taken larger: cutting arcs into edges takes off less."""

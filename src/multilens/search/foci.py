@@ -5,7 +5,8 @@ from jaxtyping import Float
 from torch import Generator, Tensor
 
 from multilens.cues import LensDefocus
-from multilens.problem import Problem, Question
+from multilens.problem import Problem
+from multilens.question import Question
 from multilens.search.refocus import refocus
 from multilens.search.stretches import Stretches
 from multilens.search.variables import Variables
@@ -28,9 +29,9 @@ class Foci:
         device = variables.low.device
         self.columns = variables.free[variables.free >= variables.focus_start]
         self.stretches: Stretches | None = None
-        if isinstance(question, Problem) and len(self.columns) and question.is_envelope and _has_defocus(question):
+        if isinstance(question, Problem) and len(self.columns) and question.has_closed_form and _has_defocus(question):
             self.closed_form = question.closed_form(device)
-            self.stretches = Stretches(question.depths.to(device), question.weights.to(device))
+            self.stretches = Stretches(question.depths.to(device), question.score_weights.to(device))
 
     def afresh(self, share: Float[Tensor, "b v"]) -> Float[Tensor, "b v"]:
         """Give the layouts with foci that do not depend on those they have."""

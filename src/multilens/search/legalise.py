@@ -4,7 +4,7 @@ import torch
 
 from multilens.certificate import Certificate, certify
 from multilens.layout import Layout
-from multilens.problem import Question
+from multilens.question import Question
 
 DECIMALS = 12
 """Kept of each number in mm; what is stored is what is certified."""

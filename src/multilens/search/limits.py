@@ -9,7 +9,7 @@ from torch import Tensor
 
 from multilens.geometry.distance import outward_normals
 from multilens.layout import Layout
-from multilens.problem import Question
+from multilens.question import Question
 
 TINY = 1e-300
 

@@ -15,7 +15,7 @@ from multilens.geometry.distance import outward_normals
 from multilens.geometry.pairs import pair_indices
 from multilens.geometry.simplify import few_edges
 from multilens.layout import Layout
-from multilens.problem import Question
+from multilens.question import Question
 from multilens.search.limits import TINY, Room
 
 COARSE = 2e-4

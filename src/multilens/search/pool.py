@@ -8,7 +8,7 @@ from torch import Tensor
 
 from multilens.certificate import Certificate
 from multilens.layout import Layout
-from multilens.problem import Question
+from multilens.question import Question
 from multilens.search.legalise import legalise
 
 ALIKE = 1e-5
@@ -27,7 +27,7 @@ class Candidate:
     def of(cls, question: Question, layout: Layout) -> "Candidate":
         """Round, hold to the bounds, certify and score one layout in float64."""
         layout, certificate = legalise(question, layout)
-        return cls(layout, certificate, question.terms(layout).amax().item() if certificate.feasible else nan)
+        return cls(layout, certificate, question.score(layout).item() if certificate.feasible else nan)
 
     def better_than(self, other: "Candidate | None") -> bool:
         """Whether it scores less; among infeasible ones, whether it lacks less."""

@@ -5,7 +5,8 @@ from jaxtyping import Float
 from torch import Tensor
 
 from multilens.cues import LensDefocus, PairStereo
-from multilens.problem import Problem, Question
+from multilens.problem import Problem
+from multilens.question import Question
 from multilens.search.variables import Variables
 
 VALUES = 64

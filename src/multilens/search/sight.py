@@ -10,7 +10,8 @@ from torch.nn.functional import pad
 
 from multilens.geometry.pairs import pair_indices
 from multilens.numerics import soft_maximum
-from multilens.problem import Problem, Question
+from multilens.problem import Problem
+from multilens.question import Question
 from multilens.search.near_limits import NearLimits
 from multilens.search.variables import Variables
 
@@ -58,8 +59,8 @@ class Seer:
         device = variables.low.device
         self.question, self.variables = question, variables
         self.limits = NearLimits(question, device)
-        envelope = isinstance(question, Problem) and question.is_envelope
-        self.closed_form = question.closed_form(device) if isinstance(question, Problem) and envelope else None
+        known = isinstance(question, Problem) and question.has_closed_form
+        self.closed_form = question.closed_form(device) if isinstance(question, Problem) and known else None
         self.unit = question.back.size / 4
         """mm"""
         self.scale: float | None = None

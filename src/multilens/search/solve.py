@@ -14,7 +14,7 @@ from multilens.convergence import Convergence
 from multilens.design import COMPLETE, INFEASIBLE, OUT_OF_TIME, Design, Origin
 from multilens.layout import Layout
 from multilens.penalty import Price, distance_penalty
-from multilens.problem import Question
+from multilens.question import Question
 from multilens.search.barrier import BarrierSettings, Settled, settle
 from multilens.search.fit import why_nothing_fits
 from multilens.search.foci import Foci

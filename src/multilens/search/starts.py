@@ -8,7 +8,7 @@ from torch.quasirandom import SobolEngine
 from multilens.back import Back
 from multilens.constraints import room_at
 from multilens.layout import Layout
-from multilens.problem import Question
+from multilens.question import Question
 from multilens.search.variables import Variables
 
 PLACES_TRIED = 4096

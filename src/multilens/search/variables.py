@@ -5,7 +5,7 @@ from jaxtyping import Float
 from torch import Tensor
 
 from multilens.layout import Layout
-from multilens.problem import Question
+from multilens.question import Question
 
 
 class Variables:

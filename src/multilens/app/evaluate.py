@@ -1,0 +1,149 @@
+"""`multilens evaluate`: score a layout that is given, by a design, a run folder or a configuration."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from multilens.app import build
+from multilens.app.ending import DONE, signals_held
+from multilens.app.estimates import estimates, told
+from multilens.app.given import Given, read_given
+from multilens.app.refusal import RefusedError, one_line
+
+if TYPE_CHECKING:
+    from multilens.design import Design
+    from multilens.problem import Problem
+
+QUESTION = ("depth", "cues")
+"""Parts of a configuration under which a stored layout can be scored anew; the rest is the hardware, which it has."""
+
+OUT = "out"
+
+
+@dataclass(frozen=True)
+class _Asked:
+    """The words of the command line, sorted: what to score, where to write, and key=value."""
+
+    path: Path | None
+    out: Path | None
+    lines: tuple[str, ...]
+
+
+def evaluate_command(words: Sequence[str]) -> int:
+    """Score what the words name, print it, and write a run folder where one is asked for.
+
+    Args:
+        words: `DESIGN.json` or `RUN_FOLDER` or neither, key=value, and `out=FOLDER`.
+
+    Returns:
+        The exit code.
+
+    Raises:
+        RefusedError: the words cannot be understood, or a place that is needed is unknown.
+        OSError: a file cannot be read or written.
+    """
+    asked = _sorted_words(words)
+    if asked.out is not None:
+        _refuse_used(asked.out)
+    given = None if asked.path is not None and not asked.lines else read_given(asked.lines)
+    with signals_held():
+        import torch  # noqa: F401
+    from multilens.app.account import account
+
+    if asked.path is None:
+        assert given is not None
+        design, text = _of_configuration(given), given.text
+        lines = [account(design, chosen=True), told(estimates(given.config, given.keys))]
+    else:
+        design, text = _of_file(asked.path, given), f"design: {asked.path}\noverrides: {list(asked.lines)}\n"
+        lines = [account(design, chosen=False)]
+    said = "\n\n".join(filter(None, lines))
+    print(said)
+    if asked.out is not None:
+        _write(asked.out, design, text, " ".join(["multilens evaluate", *words]) + f"\n{said}\n")
+    return DONE
+
+
+def _sorted_words(words: Sequence[str]) -> _Asked:
+    paths = [word for word in words[:1] if "=" not in word and not word.startswith("-")]
+    rest = list(words[len(paths) :])
+    outs = [word.partition("=")[2] for word in rest if word.partition("=")[0] == OUT]
+    if len(outs) > 1 or "" in outs:
+        raise RefusedError(f"out must be one folder, as in out=runs/phone, got {' '.join(outs) or 'none'}")
+    lines = tuple(word for word in rest if word.partition("=")[0] != OUT)
+    if not paths and not lines:
+        raise RefusedError(
+            "evaluate must be given a design.json, a run folder or a configuration, as in multilens evaluate "
+            "experiment=devices/iphone_15_pro_max, got none"
+        )
+    return _Asked(_design_file(Path(paths[0])) if paths else None, Path(outs[0]) if outs else None, lines)
+
+
+def _design_file(path: Path) -> Path:
+    file = path / "design.json" if path.is_dir() else path
+    if not file.is_file():
+        raise RefusedError(f"evaluate: {path} must be a design.json or the folder of a run that found one, it is not")
+    return file
+
+
+def _refuse_used(folder: Path) -> None:
+    if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
+        raise RefusedError(f"out must be a new or empty folder, {folder} is a file or holds something already")
+
+
+def _of_configuration(given: Given) -> "Design":
+    from multilens.search.evaluate import evaluate, unplaced
+
+    problem = build.build_problem(given.config)
+    for index in unplaced(problem):
+        each = given.config.lenses.each
+        name = each[index].name if each is not None else None
+        key = f"lenses.each.{index}" if each is not None else "lenses.lens"
+        raise RefusedError(
+            f"lens {index + 1}{'' if name is None else f' ({name})'} has no known place: set {key}.position=[x,y], "
+            f"or the places of all as lenses.places=[[x,y],...], in mm"
+        )
+    try:
+        return evaluate(problem)
+    except ValueError as error:
+        raise RefusedError(one_line(str(error))) from None
+
+
+def _of_file(path: Path, given: Given | None) -> "Design":
+    from multilens.design import Design
+    from multilens.problem import Problem
+    from multilens.search.evaluate import as_given
+
+    try:
+        design = Design.load(path)
+    except ValueError as error:
+        raise RefusedError(f"evaluate: {one_line(str(error))}") from None
+    if given is None or not isinstance(design.problem, Problem):
+        return design
+    return as_given(_asked_anew(design.problem, given), design.layout)
+
+
+def _asked_anew(problem: "Problem", given: Given) -> "Problem":
+    """Give the problem of a stored layout with those parts of the question that the words name."""
+    parts = {key.lstrip("+~").split(".")[0] for key in given.keys}
+    for part in sorted(parts - set(QUESTION)):
+        raise RefusedError(f"{part}: a stored layout can be scored under another {' or '.join(QUESTION)}, got {part}")
+    anew = build.build_problem(given.config)
+    others = {}
+    if "depth" in parts:
+        others |= {"depths": anew.depths, "weights": anew.weights}
+    if "cues" in parts:
+        others["cues"] = anew.cues
+    # A lens that could focus where the depths were still could: its bounds are hardware.
+    pairs = zip(problem.lenses, problem.focus_range, strict=True)
+    return replace(problem, lenses=[replace(lens, focus=focus) for lens, focus in pairs], **others)
+
+
+def _write(folder: Path, design: "Design", config_text: str, log_text: str) -> None:
+    from multilens.runs import write_run
+
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    write_run(folder, design, config_text, log_text)
+    for path in sorted(folder.iterdir()):
+        print(path)

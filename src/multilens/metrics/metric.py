@@ -1,0 +1,39 @@
+"""A metric: which error of all depths counts."""
+
+from typing import Protocol, runtime_checkable
+
+from jaxtyping import Float
+from torch import Tensor
+
+
+@runtime_checkable
+class Metric(Protocol):
+    """A way to make one score of the errors at all depths: the mean or the largest of their weighted squares."""
+
+    @property
+    def name(self) -> str:
+        """What the number that people quote is called."""
+        ...
+
+    @property
+    def unit(self) -> str:
+        """Of that number; the score is in its square, or a fixed part of it."""
+        ...
+
+    @property
+    def score_unit(self) -> str:
+        """Of the score."""
+        ...
+
+    @property
+    def is_mean(self) -> bool:
+        """Whether the score is a sum over the depths, so that closed forms and bounds hold; else it is the largest."""
+        ...
+
+    def factor(self, depths: Float[Tensor, " z"]) -> Float[Tensor, " z"]:
+        """Give what the squared error at each depth is multiplied by, beside the weight of the depth."""
+        ...
+
+    def figure(self, score: float) -> float:
+        """Turn a score into the number that people quote, in `unit`."""
+        ...

@@ -1,0 +1,48 @@
+"""Numbers held to their range, where a noun is made: each refusal says name, expected, got."""
+
+from math import isfinite
+
+
+def refuse_unless_positive(name: str, value: float) -> None:
+    """Refuse what is not a finite number above 0.
+
+    Raises:
+        ValueError: it is not.
+    """
+    if not isfinite(value) or value <= 0:
+        raise ValueError(f"{name} must be > 0 and finite, got {value:g}")
+
+
+def refuse_unless_not_negative(name: str, value: float) -> None:
+    """Refuse what is not a finite number from 0 on.
+
+    Raises:
+        ValueError: it is not.
+    """
+    if not isfinite(value) or value < 0:
+        raise ValueError(f"{name} must be >= 0 and finite, got {value:g}")
+
+
+def refuse_unless_share(name: str, value: float) -> None:
+    """Refuse what is not above 0 and at most 1.
+
+    Raises:
+        ValueError: it is not.
+    """
+    if not 0 < value <= 1:
+        raise ValueError(f"{name} must be > 0 and <= 1, got {value:g}")
+
+
+def refuse_unless_range(name: str, value: tuple[float, float]) -> None:
+    """Refuse what is not two finite numbers above 0, the least first.
+
+    Raises:
+        ValueError: it is not.
+    """
+    if len(value) != 2:
+        raise ValueError(f"{name} must be two numbers, least and largest, got {len(value)}")
+    least, largest = value
+    refuse_unless_positive(f"least {name}", least)
+    refuse_unless_positive(f"largest {name}", largest)
+    if least > largest:
+        raise ValueError(f"{name} must have least <= largest, got {least:g} > {largest:g}")

@@ -1,0 +1,42 @@
+"""Numbers that no source gives are marked, and the marks are told."""
+
+import pytest
+
+from multilens.app.estimates import estimates, refuse_stray_estimates, told
+from multilens.app.refusal import RefusedError
+from multilens.app.schema import BackConfig, Config, LensConfig, LensesConfig
+
+
+def marked() -> Config:
+    lenses = [LensConfig(1.0, name="main", estimates={"clearance": "seen"}), LensConfig(2.0)]
+    return Config(
+        back=BackConfig(estimates={"outline.corner": "not published"}),
+        lenses=LensesConfig(each=lenses, estimates={"places": "seen"}),
+    )
+
+
+def test_marks_are_found_by_their_whole_keys():
+    assert list(estimates(marked())) == ["back.outline.corner", "lenses.places", "lenses.each.0.clearance"]
+
+
+def test_what_the_user_sets_is_no_estimate_of_ours():
+    assert list(estimates(marked(), ["lenses.places"])) == ["back.outline.corner", "lenses.each.0.clearance"]
+    assert "back.outline.corner" not in estimates(marked(), ["back.outline"])
+
+
+def test_a_preset_that_is_chosen_keeps_its_marks():
+    assert len(estimates(marked(), ["back", "lenses", "depth"])) == 3
+
+
+def test_keys_of_one_reason_share_a_line():
+    assert told({"a.b": "seen", "c": "heard", "d": "seen"}).splitlines()[1:] == ["  a.b, d: seen", "  c: heard"]
+
+
+def test_nothing_is_told_where_all_is_known():
+    assert told({}) == ""
+
+
+def test_a_mark_on_nothing_is_refused():
+    config = Config(back=BackConfig(estimates={"outline.cornre": "misspelt"}))
+    with pytest.raises(RefusedError, match=r"back.estimates.outline.cornre must name a key"):
+        refuse_stray_estimates(config)
