@@ -138,7 +138,7 @@ def summary(results: Results) -> str:
         "",
         f"{len(results.cases)} problems, scores after {limit:g} s; medians over the seeds {', '.join(map(str, seeds))}.",
         f"A time ratio is the time of {RIVAL}, on both cores, to within 0.1 % of the best known score over that of {OURS}.",
-        f"{RIVAL} may go on until its time shows whether the aim is kept; that limit stands for it where it never gets there (>=).",
+        f"{RIVAL} may go on until its time shows whether the aim is kept; that limit stands for it where it never is (>=).",
         "",
         "## Aims",
         "",
