@@ -43,6 +43,14 @@ def test_a_mask_picks_from_the_batch():
     assert layout[torch.tensor([True, False, True])].position.equal(layout.position[[0, 2]])
 
 
+def test_only_picks_lenses_of_every_layout():
+    layout = Layout(torch.rand(4, 3, 2), torch.rand(4, 3), torch.rand(4, 3, 2))
+    chosen = layout.only([2, 0])
+    assert chosen.position.equal(layout.position[:, [2, 0]])
+    assert chosen.aperture_radius.equal(layout.aperture_radius[:, [2, 0]])
+    assert chosen.focus.equal(layout.focus[:, [2, 0]])
+
+
 def test_to_changes_the_type_of_all_three():
     layout = Layout([[0.0, 0.0]], [1.0], [5.0]).to(torch.float32)
     assert {t.dtype for t in (layout.position, layout.aperture_radius, layout.focus)} == {torch.float32}

@@ -298,6 +298,12 @@ def test_one_lens_has_a_problem_with_both_cues():
     assert both.score(layout) == defocus.score(layout)
 
 
+def test_a_lens_focuses_no_nearer_than_it_can():
+    lenses = [Lens(6.0, (0.5, 2.0), near_focus=near) for near in (100.0, 400.0, 9000.0)]
+    ranges = Problem(BACK, lenses, [300.0, 900.0]).focus_range
+    assert ranges == ((300.0, 900.0), (400.0, 900.0), (9000.0, 9000.0))
+
+
 def test_focus_range_is_the_lens_own_or_that_of_the_depths():
     problem = Problem(BACK, [WIDE, Lens(6.0, (1.0, 1.0), focus=(100.0, 300.0))], linear_depths(200, 900))
     assert problem.focus_range == ((200.0, 900.0), (100.0, 300.0))

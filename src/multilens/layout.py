@@ -52,6 +52,15 @@ class Layout:
     def __getitem__(self, index: int | slice | Tensor) -> "Layout":
         return Layout(self.position[index], self.aperture_radius[index], self.focus[index])
 
+    def only(self, lenses: Sequence[int]) -> "Layout":
+        """Give the layout of some of the lenses, by their indices, in the order given."""
+        if tuple(lenses) == tuple(range(self.count)):
+            return self
+        chosen = torch.tensor(lenses, dtype=torch.long, device=self.position.device)
+        parts = (self.position, self.aperture_radius, self.focus)
+        dimension = self.aperture_radius.ndim - 1
+        return Layout(*(part.index_select(dimension, chosen) for part in parts))
+
     def to(self, dtype: torch.dtype) -> "Layout":
         """Give the same layout in another floating-point type."""
         return Layout(self.position.to(dtype), self.aperture_radius.to(dtype), self.focus.to(dtype))

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from math import isfinite
+from math import inf, isfinite
 
 import torch
 from jaxtyping import Float, Int
@@ -13,6 +13,7 @@ from multilens.back import Back
 from multilens.closed_form import ClosedForm, differentiable
 from multilens.cues import Cue, LensDefocus, LimitedCue, Measurement, PairStereo
 from multilens.envelope import DepthMoments
+from multilens.field_of_view import Field, Part
 from multilens.fusion import Best, Fusion
 from multilens.layout import Layout
 from multilens.lens import Lens
@@ -37,6 +38,8 @@ class Problem:
         fusion: how the measurements of one depth become one error.
         guess: standard deviation of what is known of a depth before it is measured, mm, > 0: see `prior_error`. None takes the
             spread of the depths where a cue may fail, and nothing where none does.
+        field: angles from straight ahead at which each depth is to be measured too, by those lenses that see there; None asks
+            straight ahead alone.
 
     Raises:
         ValueError: something is missing, of the wrong length or out of its range.
@@ -51,6 +54,7 @@ class Problem:
     metric: Metric
     fusion: Fusion
     guess: float | None
+    field: Field | None
 
     def __init__(
         self,
@@ -63,6 +67,7 @@ class Problem:
         metric: Metric = MeanSquare(),
         fusion: Fusion = Best(),
         guess: float | None = None,
+        field: Field | None = None,
     ) -> None:
         depths = torch.as_tensor(depths, dtype=torch.float64)
         weights = torch.ones_like(depths) if weights is None else torch.as_tensor(weights, dtype=torch.float64)
@@ -86,12 +91,16 @@ class Problem:
         object.__setattr__(self, "metric", metric)
         object.__setattr__(self, "fusion", fusion)
         object.__setattr__(self, "guess", None if guess is None else float(guess))
+        object.__setattr__(self, "field", field)
 
     @property
     def focus_range(self) -> tuple[tuple[float, float], ...]:
-        """Nearest and farthest in-focus depth of each lens, mm: its own, or else the range of the depths."""
-        whole = (self.depths.min().item(), self.depths.max().item())
-        return tuple(lens.focus or whole for lens in self.lenses)
+        """Nearest and farthest in-focus depth of each lens, mm: its own, or else what it reaches of the range of the depths."""
+        near, far = self.depths.min().item(), self.depths.max().item()
+        nearest = [lens.near_focus or 0.0 for lens in self.lenses]
+        return tuple(
+            lens.focus or (max(near, least), max(far, least)) for lens, least in zip(self.lenses, nearest, strict=True)
+        )
 
     @property
     def measurements(self) -> tuple[Measurement, ...]:
@@ -99,13 +108,20 @@ class Problem:
         return tuple(measurement for cue in self.cues for measurement in cue.measurements(self.lenses))
 
     @cached_property
+    def parts(self) -> tuple[Part, ...]:
+        """Which lenses see which share of the field: all see what lies straight ahead."""
+        everyone = Part(tuple(range(len(self.lenses))), 1.0)
+        return (everyone,) if self.field is None else self.field.parts(self.lenses)
+
+    @cached_property
     def prior_error(self) -> float | None:
-        """Error of a depth that nothing measures, mm; None where no cue can fail and no guess is given.
+        """Error of a depth that nothing measures, mm; None where there is none and no guess is given.
 
         Unless it is given, it is the standard deviation of the depths: the error of one who knows them and always says their
         mean. A single depth has none; what is not measured is then wrong by the depth itself.
         """
-        if self.guess is not None or not any(isinstance(cue, LimitedCue) for cue in self.cues):
+        limited = any(isinstance(cue, LimitedCue) for cue in self.cues)
+        if self.guess is not None or not (limited or any(not self._measures(part) for part in self.parts)):
             return self.guess
         mean = (self.weights * self.depths).sum()
         spread = (self.weights * (self.depths - mean).square()).sum().sqrt()
@@ -122,9 +138,14 @@ class Problem:
         return self.errors(layout).argmin(-2)
 
     def measured(self, layout: Layout) -> Float[Tensor, "*batch"]:
-        """Give the share of the depths, by weight, at which anything measures."""
-        known = self.errors(layout).isfinite().any(-2)
-        return (known * self.weights.to(layout.position)).sum(-1)
+        """Give the share of the depths and of the field, by weight, at which anything measures."""
+        known, weights = self.errors(layout).isfinite(), self.weights.to(layout.position)
+        lenses = [set(measurement.lenses) for measurement in self.measurements]
+        shares = []
+        for part in self.parts:
+            seen = [k for k, own in enumerate(lenses) if own <= set(part.lenses)]
+            shares.append(part.share * (known[..., seen, :].any(-2) * weights).sum(-1))
+        return torch.stack(shares).sum(0)
 
     @cached_property
     def score_weights(self) -> Float[Tensor, " z"]:
@@ -143,7 +164,7 @@ class Problem:
 
     def score_over_depths(self, layout: Layout) -> Float[Tensor, "*batch"]:
         """Give the score by the error of every cue at every depth, as any cue allows."""
-        return self._weighted(self.squared_error(layout)).amax(-1)
+        return self._weighted(self._by_part(layout)).amax(-1)
 
     def terms(self, layout: Layout) -> Float[Tensor, "*batch m"]:
         """Give what a search minimises the largest of: the score, or the worst case depth by depth.
@@ -152,7 +173,7 @@ class Problem:
         """
         if self.has_closed_form:
             return self.score(layout).unsqueeze(-1)
-        return self._weighted(self.squared_error(layout, smooth=True))
+        return self._weighted(self._by_part(layout, smooth=True))
 
     def mean_square(self, layout: Layout) -> Float[Tensor, "*batch"]:
         """Give the weighted mean of the squared error, mm^2, whichever metric the score has."""
@@ -165,21 +186,22 @@ class Problem:
     ) -> Float[Tensor, "*batch m"]:
         """Give the square of the one error at each depth, of all that measures it and what is known before, mm^2.
 
+        It is the mean over the field, where one is asked for.
+
         Args:
             layout: one or a batch, of this problem's lenses.
             depths: mm, > 0; None takes the problem's.
             smooth: whether a search asks; else it is what may be claimed.
         """
-        self._refuse_other_lenses(layout)
-        depths = (self.depths if depths is None else depths).to(layout.position)
-        return self._with_prior(self.fusion.squared_error(self.cues, layout, self.lenses, depths, smooth))
+        squares = self._by_part(layout, depths, smooth)
+        return (squares * self._shares(squares)).sum(-2)
 
     @cached_property
     def is_envelope(self) -> bool:
         """Whether at every depth the best of the thesis' cues counts, so that, divided by the depth, errors are a line and Vs."""
         kinds = [type(cue) for cue in self.cues]
         known = set(kinds) <= {PairStereo, LensDefocus} and len(kinds) == len(set(kinds))
-        return known and isinstance(self.fusion, Best) and self.guess is None
+        return known and isinstance(self.fusion, Best) and self.guess is None and self.field is None
 
     @cached_property
     def has_closed_form(self) -> bool:
@@ -197,12 +219,35 @@ class Problem:
     def _closed_forms(self) -> dict[torch.device, ClosedForm]:
         return {}
 
-    def _weighted(self, square: Float[Tensor, "*batch z"]) -> Float[Tensor, "*batch m"]:
+    def _by_part(
+        self, layout: Layout, depths: Float[Tensor, " z"] | None = None, smooth: bool = False
+    ) -> Float[Tensor, "*batch g z"]:
+        """Give the squared error at each depth in each part of the field, by the lenses that see it alone."""
+        self._refuse_other_lenses(layout)
+        depths = (self.depths if depths is None else depths).to(layout.position)
+        squares = []
+        for part in self.parts:
+            if self._measures(part):
+                lenses = [self.lenses[index] for index in part.lenses]
+                square = self.fusion.squared_error(self.cues, layout.only(part.lenses), lenses, depths, smooth)
+            else:
+                square = depths.new_full((*layout.aperture_radius.shape[:-1], len(depths)), inf)
+            squares.append(self._with_prior(square))
+        return torch.stack(squares, dim=-2)
+
+    def _measures(self, part: Part) -> bool:
+        lenses = [self.lenses[index] for index in part.lenses]
+        return any(cue.measurements(lenses) for cue in self.cues)
+
+    def _shares(self, like: Tensor) -> Float[Tensor, "g 1"]:
+        return like.new_tensor([part.share for part in self.parts]).unsqueeze(-1)
+
+    def _weighted(self, squares: Float[Tensor, "*batch g z"]) -> Float[Tensor, "*batch m"]:
         """Give the terms of the score: their mean, or all of which the largest counts."""
         if self.metric.is_mean:
-            return (square * self.score_weights.to(square)).sum(-1, keepdim=True)
+            return (squares * (self._shares(squares) * self.score_weights.to(squares))).sum((-2, -1)).unsqueeze(-1)
         counted = self.weights > 0
-        return square[..., counted] * self.metric.factor(self.depths[counted]).to(square)
+        return (squares[..., counted] * self.metric.factor(self.depths[counted]).to(squares)).flatten(-2)
 
     def _with_prior(self, square: Float[Tensor, "*batch z"]) -> Float[Tensor, "*batch z"]:
         """Give the squared error of measurement and guess together, 1 / (1/e^2 + 1/g^2)."""
