@@ -71,7 +71,7 @@ def solve(
     starts: int = 64,
     seed: int = 0,
     time_limit: float | None = None,
-    patience: int = 8,
+    patience: int = 12,
     proof: int = 4000,
     penalty: Callable[[Question], Price] = distance_penalty,
     batch: int = BATCH,
