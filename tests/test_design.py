@@ -134,7 +134,7 @@ def set_at(*path_and_value):
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        (set_at("schema_version", 2), "schema_version must be 1, got 2"),
+        (set_at("schema_version", 3), "schema_version must be 2, got 3"),
         (set_at("score", 1.0), "score must be the layout's, "),
         (set_at("rmse", 1.0), "rmse must be the layout's, "),
         (set_at("status", "infeasible"), "status must be one of complete, time limit, as given, got 'infeasible'"),

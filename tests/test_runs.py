@@ -267,8 +267,9 @@ def test_a_sweep_is_gathered_in_the_order_of_its_jobs(sweep):
 
 def test_a_row_holds_what_came_of_its_job(sweep, design):
     found, failed = (sweep_table(sweep)[index] for index in (1, 2))
+    rmse = design.score**0.5
     assert found == SweepRow(
-        2, ("lenses.count=2", "depth=room"), "complete", "", 2, design.score, design.score**0.5, None, 50.0
+        2, ("lenses.count=2", "depth=room"), "complete", "", 2, "RMSE", rmse, "mm", design.score, rmse, 1.0, None, 50.0
     )
     assert failed == SweepRow(3, ("lenses.count=9", "gap=[1,2]"), "infeasible", "no room | at all")
 
@@ -284,22 +285,26 @@ def test_the_table_of_a_sweep_has_a_column_for_every_key(sweep, design):
         "gap",
         "lens_count",
         "status",
-        "score_mm2",
+        "metric",
+        "figure",
+        "unit",
+        "score",
         "rmse_mm",
+        "measured",
         "gap_to_bound",
         "longest_baseline_mm",
         "reason",
     ]
     assert [row["lenses.count"] for row in rows] == ["0", "2", "9", "", "", "10"]
     assert rows[2]["gap"] == "[1,2]"
-    assert float(rows[1]["score_mm2"]) == design.score
+    assert float(rows[1]["score"]) == design.score
     assert rows[4]["reason"].startswith(str(sweep / "5" / "design.json"))
 
 
 def test_the_table_to_read_is_a_table(sweep):
     write_sweep_table(sweep)
     head, rule, *rows = (sweep / "table.md").read_text().splitlines()
-    assert {line.replace(r"\|", "").count("|") for line in (head, rule, *rows)} == {12}
+    assert {line.replace(r"\|", "").count("|") for line in (head, rule, *rows)} == {16}
     assert "no room \\| at all" in rows[2]
 
 

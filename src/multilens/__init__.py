@@ -15,6 +15,9 @@ if TYPE_CHECKING:
     from multilens.cues import LimitedStereo as LimitedStereo
     from multilens.cues import PairLimits as PairLimits
     from multilens.cues import PairStereo as PairStereo
+    from multilens.cues import PhotometricDefocus as PhotometricDefocus
+    from multilens.cues import PhotometricStereo as PhotometricStereo
+    from multilens.cues import PrintedDefocus as PrintedDefocus
     from multilens.depths import linear_depths as linear_depths
     from multilens.depths import log_depths as log_depths
     from multilens.design import Design as Design
@@ -54,6 +57,9 @@ _HOME = {
     "MeanSquare": "metrics",
     "PairLimits": "cues",
     "PairStereo": "cues",
+    "PhotometricDefocus": "cues",
+    "PhotometricStereo": "cues",
+    "PrintedDefocus": "cues",
     "Problem": "problem",
     "Relative": "metrics",
     "Scene": "scene",

@@ -30,8 +30,7 @@ from multilens.storage import Origin, write_whole
 
 COMPLETE, OUT_OF_TIME, INFEASIBLE, GIVEN = "complete", "time limit", "infeasible", "as given"
 
-SCHEMA, SCHEMA_VERSION = "multilens.design", 1
-UNITS = {"length": "mm", "score": "mm^2", "rmse": "mm", "time": "s"}
+SCHEMA, SCHEMA_VERSION = "multilens.design", 2
 
 ROUNDING = 1e-9
 """Part of a score by which a lower bound may lie above it, where both are as good as they can be."""
@@ -72,13 +71,31 @@ class Design:
 
     @property
     def score(self) -> float:
-        """Exact score, mm^2 (for a score of one's own, in its unit); NaN if infeasible."""
+        """Exact score, in the metric's `score_unit`, mm^2 as it is (for a score of one's own, in its unit); NaN if infeasible."""
         return self.problem.score(self.layout).item() if self.status != INFEASIBLE else nan
 
     @property
     def rmse(self) -> float:
-        """Root of the score: the root-mean-square error of depth, mm; NaN if infeasible or the score is negative."""
+        """Root-mean-square error of depth, mm, whichever metric was asked for; NaN if infeasible.
+
+        Of a score of one's own it is the root, NaN if that is negative.
+        """
+        if isinstance(self.problem, Problem) and self.status != INFEASIBLE:
+            return sqrt(self.problem.mean_square(self.layout).item())
         return sqrt(self.score) if self.score >= 0 else nan
+
+    @property
+    def figure(self) -> float:
+        """The score as people quote it, in the metric's `unit`; a score of one's own as it is; NaN if infeasible."""
+        metric = self.problem.metric
+        return self.score if metric is None or self.status == INFEASIBLE else metric.figure(self.score)
+
+    @property
+    def measured(self) -> float:
+        """Share of the depths, by weight, at which anything measures, 1 unless cues may fail; NaN if infeasible or without depths."""
+        if not isinstance(self.problem, Problem) or self.status == INFEASIBLE:
+            return nan
+        return self.problem.measured(self.layout).item()
 
     @property
     def gap(self) -> float:
@@ -158,10 +175,12 @@ class Design:
         if self.status == INFEASIBLE:
             raise ValueError(f"design must be feasible to be saved: {self.reason}")
         content = {
-            "units": UNITS,
+            "units": _units(self.problem),
             "status": self.status,
             "score": self.score,
+            "figure": self.figure,
             "rmse": self.rmse,
+            "measured": self.measured,
             "layout": layout_record(self.layout, self.problem.lenses),
             "problem": problem_record(self.problem),
             "certificate": certificate_record(self.certificate),
@@ -185,7 +204,9 @@ class Design:
             "units",
             "status",
             "score",
+            "figure",
             "rmse",
+            "measured",
             "layout",
             "problem",
             "certificate",
@@ -194,10 +215,10 @@ class Design:
             "bound",
         )
         fields = record(content, "design", keys)
-        if fields["units"] != UNITS:
-            raise ValueError(f"units must be {UNITS}, got {fields['units']!r:.80}")
         status = choice(fields["status"], "status", (COMPLETE, OUT_OF_TIME, GIVEN))
         problem = read_problem(fields["problem"], "problem")
+        if fields["units"] != (units := _units(problem)):
+            raise ValueError(f"units must be {units}, got {fields['units']!r:.80}")
         layout = read_layout(fields["layout"], "layout", problem.lenses)
         certificate = certify(problem.back, problem.lenses, problem.focus_range, layout, problem.gap)
         design = cls(
@@ -239,10 +260,15 @@ class Design:
         width = [max(len(cell) for cell in column) for column in zip(head, *rows, strict=True)]
         table = ["  ".join(map(str.rjust, row, width)).rstrip() for row in (head, *rows)]
         facts = {"status": self.status}
+        metric = self.problem.metric
+        if metric is None:
+            facts["score"] = f"{self.score:.6g}"
+        else:
+            facts[metric.name] = f"{self.figure:.6g} {metric.unit}"
         if isinstance(self.problem, Problem):
             facts["RMSE"] = f"{self.rmse:.6g} mm"
-        else:
-            facts["score"] = f"{self.score:.6g}"
+            if self.measured < 1:
+                facts["measured"] = f"{100 * self.measured:.3g} % of the depths"
         if self.longest_baseline is not None:
             baseline, (first, second) = self.longest_baseline
             facts["longest baseline"] = f"{baseline:.3f} mm, lens {first + 1} to lens {second + 1}"
@@ -256,7 +282,19 @@ class Design:
     def _bound_in_words(self, bound: Bound) -> str:
         if bound.value is None:
             return bound.reason
-        return f"no layout can have an RMSE below {sqrt(bound.value):.6g} mm; gap {100 * self.gap:.2g} % of the score"
+        metric = self.problem.metric
+        least = f"score below {bound.value:.6g}"
+        if metric is not None:
+            least = f"{metric.name} below {metric.figure(bound.value):.6g} {metric.unit}"
+        article = "an" if least.startswith("RMSE") else "a"
+        return f"no layout can have {article} {least}; gap {100 * self.gap:.2g} % of the score"
+
+
+def _units(problem: Question) -> dict[str, str]:
+    """Give the unit of every kind of number in a file."""
+    units = {"length": "mm", "rmse": "mm", "time": "s"}
+    metric = problem.metric
+    return units if metric is None else units | {"score": metric.score_unit, "figure": metric.unit}
 
 
 def _bound_record(bound: Bound) -> dict[str, Any]:
@@ -276,7 +314,8 @@ def _refuse_unless_it_holds(design: Design, fields: dict[str, Any]) -> None:
     if not design.certificate.feasible and design.status != GIVEN:
         tightest = design.certificate.tightest
         raise ValueError(f"layout must be feasible, got {tightest.what} lacking {-tightest.room:.4g} mm")
-    for name, actual in (("score", design.score), ("rmse", design.rmse)):
+    for name in ("score", "figure", "rmse", "measured"):
+        actual = getattr(design, name)
         stored = number(fields[name], name)
         if not isclose(stored, actual, rel_tol=SAME):
             raise ValueError(f"{name} must be the layout's, {actual!r}, got {stored!r}")

@@ -10,6 +10,7 @@ from torch import Tensor
 from multilens.back import Back
 from multilens.layout import Layout
 from multilens.lens import Lens
+from multilens.metrics import Metric
 
 
 @runtime_checkable
@@ -34,6 +35,11 @@ class Question(Protocol):
     @property
     def focus_range(self) -> tuple[tuple[float, float], ...]:
         """Nearest and farthest in-focus depth of each lens, mm."""
+        ...
+
+    @property
+    def metric(self) -> Metric | None:
+        """How the score reads; None for a score of one's own, in a unit of its own."""
         ...
 
     def terms(self, layout: Layout) -> Float[Tensor, "*batch m"]:

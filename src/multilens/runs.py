@@ -43,8 +43,12 @@ class SweepRow:
         status: of its design or its failure; "unfinished" for an empty folder, "unreadable" for a damaged one.
         reason: why there is no design; empty where there is one.
         lens_count: how many lenses; None without a design, like all that follows.
-        score: mm^2.
-        rmse: mm.
+        metric: what was asked for, such as RMSE.
+        figure: the score as the metric quotes it, in `unit`.
+        unit: of the figure.
+        score: in the square of that unit, or a fixed part of it.
+        rmse: mm, whichever metric was asked for.
+        measured: share of the depths at which anything measures.
         gap: to the lower bound, as a part of the score; None where no bound is known.
         longest_baseline: mm; None for a single lens.
     """
@@ -54,8 +58,12 @@ class SweepRow:
     status: str
     reason: str = ""
     lens_count: int | None = None
+    metric: str | None = None
+    figure: float | None = None
+    unit: str | None = None
     score: float | None = None
     rmse: float | None = None
+    measured: float | None = None
     gap: float | None = None
     longest_baseline: float | None = None
 
@@ -209,7 +217,9 @@ def _row(folder: Path) -> SweepRow:
             longest = design.longest_baseline
             baseline = None if longest is None else longest[0]
             gap = None if isnan(design.gap) else design.gap
-            found = design.layout.count, design.score, design.rmse, gap, baseline
+            metric = design.problem.metric
+            quoted = (None, design.figure, None) if metric is None else (metric.name, design.figure, metric.unit)
+            found = design.layout.count, *quoted, design.score, design.rmse, design.measured, gap, baseline
             return SweepRow(job, overrides, design.status, "", *found)
         if (folder / FAILURE).exists():
             failure = record(_json(folder / FAILURE), FAILURE, ("status", "reason"))
@@ -242,8 +252,12 @@ def _cells(rows: Sequence[SweepRow]) -> list[list[Any]]:
         *keys,
         "lens_count",
         "status",
-        "score_mm2",
+        "metric",
+        "figure",
+        "unit",
+        "score",
         "rmse_mm",
+        "measured",
         "gap_to_bound",
         "longest_baseline_mm",
         "reason",
@@ -254,8 +268,12 @@ def _cells(rows: Sequence[SweepRow]) -> list[list[Any]]:
             *(setting.get(key) for key in keys),
             row.lens_count,
             row.status,
+            row.metric,
+            row.figure,
+            row.unit,
             row.score,
             row.rmse,
+            row.measured,
             row.gap,
             row.longest_baseline,
             row.reason,

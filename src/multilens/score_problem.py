@@ -43,6 +43,11 @@ class ScoreProblem:
         """Nearest and farthest in-focus depth of each lens, mm."""
         return tuple(lens.focus or (1.0, 1.0) for lens in self.lenses)
 
+    @property
+    def metric(self) -> None:
+        """Say that the score has a unit of its own."""
+        return None
+
     def terms(self, layout: Layout) -> Float[Tensor, "*batch m"]:
         """Give the numbers of which the largest is the score."""
         terms = self.function(layout)

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from torch.autograd import gradcheck
 
 from multilens import Layout, Lens
-from multilens.cues import LimitedCue, LimitedStereo, PairLimits, PairStereo
+from multilens.cues import FusedCue, LimitedCue, LimitedStereo, PairLimits, PairStereo
 
 LENS = Lens(6.0, (0.5, 3.0), disparity_noise=0.001, field_of_view_deg=70.0)
 LIMITED = LimitedStereo(PairLimits(max_disparity=0.6, least_overlap=0.5))
@@ -52,8 +52,26 @@ def test_without_limits_it_is_the_stereo_of_the_thesis():
     assert free.smooth(layout, lenses, DEPTHS).equal(PairStereo()(layout, lenses, DEPTHS))
 
 
-def test_it_is_a_limited_cue():
+@given(places)
+def test_all_views_together_tell_no_less_than_the_best_pair_and_no_more_than_without_limits(position):
+    layout = standing(position)
+    told = LIMITED.information(layout, [LENS] * 3, DEPTHS)
+    best = LIMITED(layout, [LENS] * 3, DEPTHS).amin(-2)
+    free = PairStereo().information(layout, [LENS] * 3, DEPTHS)
+    assert (told >= best**-2 * (1 - 1e-12)).all()
+    assert (told <= free * (1 + 1e-12)).all()
+
+
+@given(places)
+def test_what_a_search_counts_on_is_no_more_than_what_is_told(position):
+    layout = standing(position)
+    told, counted_on = (LIMITED.information(layout, [LENS] * 3, DEPTHS, smooth) for smooth in (False, True))
+    assert (counted_on <= told * (1 + 1e-12)).all()
+
+
+def test_it_is_a_limited_cue_and_a_fused_one():
     assert isinstance(LIMITED, LimitedCue)
+    assert isinstance(LIMITED, FusedCue)
 
 
 def test_gradients():

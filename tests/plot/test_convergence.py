@@ -5,8 +5,11 @@ import torch
 from matplotlib.figure import Figure
 
 from multilens.convergence import Convergence
+from multilens.metrics import MeanSquare, Relative
 from multilens.plot.convergence import BEST, START, draw_convergence
 from multilens.plot.style import style
+
+MEAN_SQUARE = MeanSquare()
 
 CONVERGENCE = Convergence(
     steps=(0, 5, 10),
@@ -16,11 +19,11 @@ CONVERGENCE = Convergence(
 )
 
 
-def drawn(convergence, score):
+def drawn(convergence, score, metric=MEAN_SQUARE):
     with style():
         figure = Figure(figsize=(9, 7))
         ax = figure.add_axes((0.1, 0.1, 0.85, 0.75))
-        draw_convergence(ax, convergence, score)
+        draw_convergence(ax, convergence, score, metric)
         figure.draw_without_rendering()
     return ax
 
@@ -62,9 +65,16 @@ def test_the_designs_error_is_a_line():
 
 def test_negative_scores_are_drawn_themselves_on_a_linear_axis():
     circles = Convergence((0, 5), torch.tensor([[-0.1, -0.12], [-0.05, -0.13]]), (0,), (-0.14,))
-    ax = drawn(circles, -0.14)
+    ax = drawn(circles, -0.14, metric=None)
     assert ax.get_yscale() == "linear"
     assert "design: -0.1400" in words(ax)
+
+
+def test_the_axis_and_the_legend_have_the_metrics_unit():
+    shares = Convergence((0, 5), torch.tensor([[4e-4, 1e-4]]), (0,), (1e-4,))
+    ax = drawn(shares, 1e-4, Relative())
+    assert ax.get_ylabel() == "relative RMSE of the layout as it stands (%)"
+    assert "design: 1.000 %" in words(ax)
 
 
 def test_nothing_polished_is_drawn():

@@ -12,8 +12,18 @@ from omegaconf import DictConfig, OmegaConf, open_dict
 from multilens.app.cues import build_cues, check_cues
 from multilens.app.estimates import refuse_stray_estimates
 from multilens.app.refusal import RefusedError, one_line, refused_at
-from multilens.app.schema import BackConfig, Config, LensConfig, LensesConfig, ShapeConfig, ShapeKind, Spacing
+from multilens.app.schema import (
+    BackConfig,
+    Config,
+    FieldOfViewConfig,
+    LensConfig,
+    LensesConfig,
+    ShapeConfig,
+    ShapeKind,
+    Spacing,
+)
 from multilens.back import Back
+from multilens.field_of_view import Field
 from multilens.geometry import shape
 from multilens.geometry.shape import Shape
 from multilens.lens import Lens
@@ -27,6 +37,7 @@ MOST_POINTS = 10_000
 MOST_DEPTHS = 4096
 MOST_STARTS = 65_536
 MOST_BOXES = 10_000_000
+MOST_RINGS = 1024
 NAME = re.compile(r"[A-Za-z0-9._-]{1,100}")
 KEEP_OUT_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9 ._-]{0,99}")
 
@@ -64,6 +75,7 @@ def check(config: Config) -> None:
     if not (isfinite(far) and far > near):
         raise RefusedError(f"depth.far must be > depth.near = {near:g} mm and finite, got {far:g}")
     _refuse_unless_count("depth.count", config.depth.count, 2, MOST_DEPTHS)
+    build_field(config.field_of_view)
     check_cues(config.cues)
     _refuse_unless_count("search.starts", config.search.starts, 1, MOST_STARTS)
     _refuse_unless_count("search.patience", config.search.patience, 0, MOST_STARTS)
@@ -109,6 +121,17 @@ def build_lenses(config: LensesConfig) -> tuple[Lens, ...]:
     return _placed((_build_lens("lenses.lens", config.lens),) * config.count, config.places)
 
 
+def build_field(config: FieldOfViewConfig) -> Field | None:
+    """Make the field in which depth is asked for; None for straight ahead alone."""
+    if config.whole_deg is None:
+        return None
+    whole = config.whole_deg
+    if not 0 < whole < 180:
+        raise RefusedError(f"field_of_view.whole_deg must be > 0 and < 180 degrees, or null, got {whole:g}")
+    _refuse_unless_count("field_of_view.rings", config.rings, 1, MOST_RINGS)
+    return Field.rings(whole, config.rings)
+
+
 def build_problem(config: Config) -> "Problem":
     """Make the question; this is where torch comes in.
 
@@ -123,7 +146,8 @@ def build_problem(config: Config) -> "Problem":
     with refused_at("depth"):
         range_of_depths = depths[config.depth.spacing](config.depth.near, config.depth.far, config.depth.count)
     with refused_at("cues"):
-        return Problem(back, lenses, range_of_depths, cues=build_cues(config.cues), gap=config.lenses.gap)
+        field, cues = build_field(config.field_of_view), build_cues(config.cues)
+        return Problem(back, lenses, range_of_depths, cues=cues, gap=config.lenses.gap, field=field)
 
 
 def _placed(lenses: tuple[Lens, ...], places: list[Any] | None) -> tuple[Lens, ...]:

@@ -75,6 +75,7 @@ def _run_alone(config: DictConfig, folder: Path, log: list[str]) -> None:
 
 
 def _run_sweep_job(config: DictConfig, folder: Path, overrides: list[str], log: list[str], visible: bool) -> None:
+    from multilens.metrics import in_words
     from multilens.runs import write_failure, write_run
 
     label = f"{_from_here(folder)}: {' '.join(overrides)}"
@@ -90,7 +91,7 @@ def _run_sweep_job(config: DictConfig, folder: Path, overrides: list[str], log: 
         log.append(traceback.format_exc())
     else:
         write_run(folder, design, _text(config), _lines(log), overrides)
-        print(f"{label}: RMSE {design.rmse:.4g} mm", flush=True)
+        print(f"{label}: {in_words(design.problem.metric, design.score, 4)}", flush=True)
         return
     write_failure(folder, status, line, _text(config), _lines([*log, line]), overrides)
     print(f"{label}: {status}: {line}", flush=True)

@@ -181,6 +181,19 @@ class CuesConfig:
 
 
 @dataclass
+class FieldOfViewConfig:
+    """How far from straight ahead depth is to be measured.
+
+    Args:
+        whole_deg: the field from side to side; null asks straight ahead alone.
+        rings: of equal area that the field is divided into.
+    """
+
+    whole_deg: float | None = None
+    rings: int = 8
+
+
+@dataclass
 class PenaltyConfig:
     """What a start pays for room that is not there.
 
@@ -219,6 +232,7 @@ class Config:
         back: where lenses may stand.
         lenses: what is known of each.
         depth: where depth is to be measured.
+        field_of_view: how far from straight ahead.
         cues: ways to measure it.
         penalty: for room that is not there.
         search: how long and how widely.
@@ -228,6 +242,7 @@ class Config:
     back: BackConfig = field(default_factory=BackConfig)
     lenses: LensesConfig = field(default_factory=LensesConfig)
     depth: DepthConfig = field(default_factory=DepthConfig)
+    field_of_view: FieldOfViewConfig = field(default_factory=FieldOfViewConfig)
     cues: CuesConfig = field(default_factory=CuesConfig)
     penalty: PenaltyConfig = field(default_factory=PenaltyConfig)
     search: SearchConfig = field(default_factory=SearchConfig)

@@ -3,11 +3,12 @@
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
-from math import isfinite, sqrt
+from math import isfinite
 
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn
 
+from multilens.metrics import in_words
 from multilens.search.progress import Listener
 from multilens.search.progress import Progress as SearchProgress
 
@@ -37,7 +38,7 @@ def progress_bar(log: list[str], visible: bool) -> Iterator[Listener]:
 
 
 def told(progress: SearchProgress) -> str:
-    """Say in words how far a search has come: starts alive, best RMSE so far, time left."""
-    best = f"{sqrt(progress.best):.4g} mm" if isfinite(progress.best) and progress.best >= 0 else "none"
+    """Say in words how far a search has come: starts alive, the best so far, time left."""
+    best = in_words(progress.metric, progress.best, 4) if isfinite(progress.best) else "none"
     left = f"{max(progress.seconds_left, 0):.0f} s left" if isfinite(progress.seconds_left) else ""
-    return ", ".join(filter(None, [f"{progress.alive} of {progress.starts} starts alive", f"best RMSE {best}", left]))
+    return ", ".join(filter(None, [f"{progress.alive} of {progress.starts} starts alive", f"best {best}", left]))

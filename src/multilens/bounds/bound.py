@@ -7,9 +7,10 @@ import numpy as np
 
 from multilens.bounds.branch import Tree, branch
 from multilens.bounds.cut import Depths
-from multilens.bounds.kinds import kinds_of
+from multilens.bounds.kinds import kinds_of, pairs_of
 from multilens.bounds.packing import Space
 from multilens.bounds.room import body_area, box_area
+from multilens.bounds.worst import Serving, least_worst
 from multilens.cues import LensDefocus, PairStereo
 from multilens.fusion import Best
 from multilens.problem import Problem
@@ -72,10 +73,31 @@ def lower_bound(problem: Question, boxes: int = 4000, target: float = inf) -> Bo
     )
     stereo = PairStereo in present and len(problem.lenses) > 1
     tree = Tree(_depths(problem), kinds, space, stereo, LensDefocus in present)
+    if not problem.metric.is_mean:
+        return _bound_of_worst(problem, tree)
     found = branch(tree, boxes, target)
     if found.value == inf:
         return Bound(None, "no layout is feasible: the smallest apertures cannot be packed", boxes=found.boxes)
     return Bound(found.value, root=found.root, boxes=found.boxes)
+
+
+def _bound_of_worst(problem: Problem, tree: Tree) -> Bound:
+    """Give the bound of a score that is the largest of all depths."""
+    smallest = np.zeros((1, len(problem.lenses)), dtype=int)
+    if tree.bounds(smallest, smallest, [])[0] == inf:
+        return Bound(None, "no layout is feasible: the smallest apertures cannot be packed", boxes=1)
+    baseline, _ = pairs_of(tree.kinds, smallest, problem.gap)
+    ranges = np.array(problem.focus_range)
+    serving = Serving(
+        float(baseline[0]) if tree.stereo else 0.0,
+        max(float(kind.effective_aperture[-1]) for kind in tree.kinds) if tree.defocus else 0.0,
+        sum(lens.tiers for lens in problem.lenses),
+        (float(ranges[:, 0].min()), float(ranges[:, 1].max())),
+    )
+    counted = problem.weights > 0
+    factor = problem.metric.factor(problem.depths[counted]).numpy()
+    value = least_worst(problem.depths[counted].numpy(), factor, serving)
+    return Bound(value, root=value, boxes=1)
 
 
 def _depths(problem: Problem) -> Depths:

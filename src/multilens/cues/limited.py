@@ -9,9 +9,11 @@ from torch import Tensor
 
 from multilens.cues.cue import Measurement
 from multilens.cues.limits import PairLimits
-from multilens.cues.thesis import PairStereo
+from multilens.cues.thesis import NANOMETRE, PairStereo
+from multilens.geometry.pairs import pair_distance
 from multilens.layout import Layout
 from multilens.lens import Lens
+from multilens.optics.many_views import view_information
 
 FLOOR = 1e-6
 """Of the smooth factor by which an error is divided: where a pair may not be used, its smooth error is a million times what it
@@ -50,3 +52,15 @@ class LimitedStereo:
         """Give the depth error of every pair divided by the limits' smooth factor, mm."""
         factor = self.limits.factor(layout, lenses, depths).clamp(min=FLOOR)
         return PairStereo()(layout, lenses, depths) / factor
+
+    def information(
+        self, layout: Layout, lenses: Sequence[Lens], depths: Float[Tensor, " z"], smooth: bool = False
+    ) -> Float[Tensor, "*batch z"]:
+        """Give what all lenses tell together as views of one point, 1/mm^2, of those pairs that may be used."""
+        if smooth:
+            usable = self.limits.factor(layout, lenses, depths).square()
+        else:
+            usable = self.limits.usable(layout, lenses, depths).to(layout.position)
+        precision = PairStereo().precision(layout, lenses)
+        baseline = pair_distance(layout.position).clamp(min=NANOMETRE)
+        return view_information(baseline, precision, usable) / depths**4

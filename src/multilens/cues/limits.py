@@ -55,6 +55,11 @@ class PairLimits:
         """Say which pair may be used at which depth."""
         return depths >= self.nearest(layout, lenses).unsqueeze(-1)
 
+    def bind(self, lenses: Sequence[Lens]) -> bool:
+        """Say whether anything limits these lenses: where nothing does every factor is 1."""
+        own = any(lens.field_of_view_deg is not None or lens.near_focus is not None for lens in lenses)
+        return own or self.max_disparity is not None
+
     def factor(
         self, layout: Layout, lenses: Sequence[Lens], depths: Float[Tensor, " z"]
     ) -> Float[Tensor, "*batch p z"]:

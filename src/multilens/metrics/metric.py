@@ -35,5 +35,12 @@ class Metric(Protocol):
         ...
 
     def figure(self, score: float) -> float:
-        """Turn a score into the number that people quote, in `unit`."""
+        """Turn a score into the number that people quote, in `unit`; the root of the score, or a fixed part of it."""
         ...
+
+
+def in_words(metric: Metric | None, score: float, digits: int = 6) -> str:
+    """Say a score as people quote it, such as "RMSE 1.35 mm"; a score of one's own, that has no metric, as it is."""
+    if metric is None:
+        return f"score {score:.{digits}g}"
+    return f"{metric.name} {metric.figure(score):.{digits}g} {metric.unit}"

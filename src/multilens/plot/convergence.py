@@ -1,13 +1,12 @@
 """How the starts of a search came down to the design."""
 
-from math import isfinite, sqrt
-
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter
 
 from multilens.convergence import Convergence
+from multilens.metrics import Metric
 from multilens.plot.style import FAINT, INK, LENS_COLOURS, SMALL_FONT_SIZE
 from multilens.plot.units import significant
 
@@ -17,23 +16,23 @@ ROOM_AT_RIGHT = 0.06
 """Of the steps, for the marks of the polished starts."""
 
 
-def draw_convergence(ax: Axes, convergence: Convergence, score: float) -> None:
-    """Draw the root-mean-square error of every start at every step, those that were polished as marks, and the design's.
+def draw_convergence(ax: Axes, convergence: Convergence, score: float, metric: Metric | None = None) -> None:
+    """Draw the metric's figure of every start at every step, those that were polished as marks, and the design's.
 
     In the first steps of a start its lenses may still overlap or leave the back, so that its error may be less than any that is
-    possible; the axis says so. The design may be better than every start: it may be a variation of one. A score that can be
-    negative is drawn itself, not its root.
+    possible; the axis says so. The design may be better than every start: it may be a variation of one. A score of one's
+    own is drawn itself.
 
     Args:
         ax: drawn on.
         convergence: of the starts.
-        score: of the design, mm^2.
+        score: of the design.
+        metric: how scores read; None for a score of one's own.
     """
-    rooted = score >= 0 and not (convergence.scores < 0).any()
-    heights = convergence.scores.detach().double().cpu().numpy()
-    heights = np.sqrt(heights) if rooted else heights
-    polished = np.array([sqrt(value) if rooted and isfinite(value) else value for value in convergence.polished_scores])
-    final = sqrt(score) if rooted else score
+    # Every metric's figure is the root of its score, or a fixed part of it.
+    part = 1.0 if metric is None else metric.figure(1.0)
+    scores = convergence.scores.detach().double().cpu().numpy(), np.array(convergence.polished_scores), np.array(score)
+    heights, polished, final = (each if metric is None else part * np.sqrt(each) for each in scores)
     ax.plot(convergence.steps, heights.T, color=START, linewidth=0.6, alpha=0.6, zorder=1)
     feasible = np.isfinite(polished)
     best = convergence.polished[int(np.nanargmin(polished))] if feasible.any() else _lowest(heights)
@@ -43,17 +42,19 @@ def draw_convergence(ax: Axes, convergence: Convergence, score: float) -> None:
     right = last + ROOM_AT_RIGHT * max(last, 1)
     marks = np.full(int(feasible.sum()), right)
     ax.plot(marks, polished[feasible], linestyle="none", marker="D", markersize=5, color=INK, alpha=0.6, zorder=4)
-    ax.axhline(final, color=INK, linewidth=1.0, linestyle=(0, (5, 3)), zorder=2)
+    ax.axhline(float(final), color=INK, linewidth=1.0, linestyle=(0, (5, 3)), zorder=2)
     ax.set_xlim(0, right + 0.02 * max(last, 1))
-    if rooted:
+    if metric is not None:
         ax.set_yscale("log")
-        ax.set_ylim(*_limits(heights, polished[feasible], final))
+        ax.set_ylim(*_limits(heights, polished[feasible], float(final)))
         _tick_in_plain_numbers(ax)
     ax.set_xlabel("step of the interior-point method (in the first steps lenses may overlap)")
-    ax.set_ylabel("RMSE of the layout as it stands (mm)" if rooted else "score of the layout as it stands")
+    read = "score" if metric is None else metric.name
+    ax.set_ylabel(f"{read} of the layout as it stands" + ("" if metric is None else f" ({metric.unit})"))
     ax.grid(True, which="major", color="#ececec", linewidth=0.8)
     ax.set_axisbelow(True)
-    _draw_legend(ax, convergence, int(feasible.sum()), f"{significant(final, 4)}{' mm' if rooted else ''}")
+    unit = "" if metric is None else f" {metric.unit}"
+    _draw_legend(ax, convergence, int(feasible.sum()), f"{significant(float(final), 4)}{unit}")
 
 
 def _lowest(heights: np.ndarray) -> int | None:

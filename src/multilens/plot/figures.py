@@ -1,7 +1,6 @@
 """Whole figures, ready for a talk, and their files."""
 
 from collections.abc import Mapping
-from math import sqrt
 from pathlib import Path
 
 from matplotlib.figure import Figure
@@ -47,7 +46,7 @@ def design_figures(problem: Question, layout: Layout, convergence: Convergence |
         if convergence is not None:
             figures["convergence"] = _figure(problem, layout, SHEET)
             score = problem.score(layout).item()
-            draw_convergence(_axes(figures["convergence"], 0.95, 0.75, 7.75, 4.85), convergence, score)
+            draw_convergence(_axes(figures["convergence"], 0.95, 0.75, 7.75, 4.85), convergence, score, problem.metric)
     return figures
 
 
@@ -94,12 +93,12 @@ def save_figures(figures: Mapping[str, Figure], folder: Path | str) -> tuple[Pat
 def title(problem: Question, layout: Layout) -> str:
     """Say in one line how many lenses there are and how well they do over which depths."""
     lenses = "1 lens" if layout.count == 1 else f"{layout.count} lenses"
-    score = problem.score(layout).item()
-    if not isinstance(problem, Problem):
+    score, metric = problem.score(layout).item(), problem.metric
+    if not isinstance(problem, Problem) or metric is None:
         return f"{lenses}, score {significant(score, 6)}"
     near, far = problem.depths.min().item(), problem.depths.max().item()
     over = depth_unit(problem).range(near, far) if far > near else depth_unit(problem).text(far)
-    return f"{lenses}, RMSE {significant(sqrt(score))} mm {'over' if far > near else 'at'} {over}"
+    return f"{lenses}, {metric.name} {significant(metric.figure(score))} {metric.unit} {'over' if far > near else 'at'} {over}"
 
 
 def warning(problem: Question, layout: Layout) -> str:

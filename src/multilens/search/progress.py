@@ -4,6 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from multilens.layout import Layout
+from multilens.metrics import Metric
 
 
 @dataclass(frozen=True)
@@ -15,9 +16,10 @@ class Progress:
         done: part of the stage that is done, 0 to 1.
         starts: how many fresh starts there have been so far.
         alive: how many of them are healthy.
-        best: score of the best layout so far that is proved feasible, mm^2; NaN while there is none.
+        best: score of the best layout so far that is proved feasible; NaN while there is none.
         layout: that layout; None while there is none.
         seconds_left: estimate until the end, s.
+        metric: how the score reads; None for a score of one's own.
     """
 
     stage: str
@@ -27,6 +29,7 @@ class Progress:
     best: float
     layout: Layout | None
     seconds_left: float
+    metric: Metric | None = None
 
 
 Listener = Callable[[Progress], None]

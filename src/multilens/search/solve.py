@@ -295,4 +295,4 @@ class _Search:
         left = (
             min((now - self.began) * (1 / max(done, 1e-3) - 1), self.end - now) if stage == "starts" else self.end - now
         )
-        self.listener(Progress(stage, done, starts, self.alive, score, layout, left))
+        self.listener(Progress(stage, done, starts, self.alive, score, layout, left, self.question.metric))
