@@ -8,6 +8,7 @@ import torch
 from multilens.back import Back
 from multilens.certificate import Certificate, Clearance, certify
 from multilens.convergence import Convergence
+from multilens.cues import PairStereo
 from multilens.depths import log_depths
 from multilens.design import INFEASIBLE, Design
 from multilens.geometry.shape import disc
@@ -17,6 +18,7 @@ from multilens.problem import Problem
 from multilens.score_problem import ScoreProblem
 from multilens.search.solve import solve
 from multilens.storage import Origin
+from multilens.tolerance import Tolerance
 
 
 def by_hand(problem, layout, **others):
@@ -200,3 +202,12 @@ def test_a_printed_score_of_ones_own_has_no_unit():
     own = ScoreProblem(Back.disc(2.0), [Lens(1.0, (0.5, 2.0))], lambda layout: -layout.aperture_radius)
     lines = str(by_hand(own, Layout([[0.0, 0.0]], [1.5], [[1.0]]))).splitlines()
     assert lines[-2:] == ["score               -1.5", "tightest clearance  0 mm, focus of lens 1"]
+
+
+def test_a_design_tells_where_it_works():
+    # Stereo alone, Z^2 n / (b f) = 10 mm, across the diagonal of what is left to the centres, 30 x 2 mm.
+    lens = Lens(5.0, (1.0, 1.0), disparity_noise=1e-3)
+    problem = Problem(Back.rectangle(32, 4), [lens] * 2, log_depths(200, 3000, 50), cues=[PairStereo()])
+    design = solve(problem, starts=2, patience=0, proof=0)
+    (found,) = design.working_range(Tolerance(mm=10)).intervals
+    assert found == pytest.approx((200, (10 * (30**2 + 2**2) ** 0.5 * 5 / 1e-3) ** 0.5), rel=1e-6)

@@ -10,6 +10,8 @@ from torch import Tensor
 
 import multilens as ml
 from multilens.cues import Measurement
+from multilens.field_of_view import Field
+from multilens.fusion import InverseVariance
 from multilens.tolerance import Tolerance
 from multilens.working_range import WorkingRange, allowed_error, working_range
 
@@ -165,3 +167,29 @@ def test_the_stretches_are_what_looking_at_very_many_depths_says(foci: list[floa
     for depth, within in zip(many.tolist(), kept, strict=True):
         near_an_end = any(abs(depth - end) < slack for stretch in found.intervals for end in stretch)
         assert near_an_end or within == any(near <= depth <= far for near, far in found.intervals)
+
+
+def test_measurements_together_reach_farther_than_the_best_of_them():
+    # Three lenses evenly on a line: by N views the squared distances from their mean count, b^2 / 2, as for one pair.
+    # With two more cues of the same error e the error of all is e / sqrt(3).
+    class Twin(Valley):
+        def __call__(self, layout, lenses, depths):
+            return (depths * 1e-3).unsqueeze(-2)
+
+    problem, layout = pair(cues=[Twin(0, 0, 0)] * 3)
+    together = ml.Problem(problem.back, problem.lenses, problem.depths, cues=problem.cues, fusion=InverseVariance())
+    assert working_range(problem, layout, Tolerance(mm=1)).intervals == (pytest.approx((200, 1000), rel=HALVED),)
+    assert working_range(together, layout, Tolerance(mm=1)).intervals == (
+        pytest.approx((200, 1000 * sqrt(3)), rel=HALVED),
+    )
+
+
+def test_the_tolerance_is_kept_in_every_part_of_the_field():
+    # Both lenses see what lies straight ahead; 30 degrees to the side only the first, whose focus is at 1000 mm.
+    wide = ml.Lens(FOCAL_LENGTH, (RADIUS, RADIUS), blur_noise=NOISE, disparity_noise=NOISE, field_of_view_deg=90)
+    tele = ml.Lens(FOCAL_LENGTH, (RADIUS, RADIUS), blur_noise=NOISE, disparity_noise=NOISE, field_of_view_deg=20)
+    problem, layout = pair(1000, 4000, cues=[ml.LensDefocus()])
+    seen = ml.Problem(problem.back, [wide, tele], problem.depths, cues=problem.cues, field=Field((0, 30), (1, 1)))
+    reach = 0.01 * 2 * RADIUS * FOCAL_LENGTH / NOISE
+    found = working_range(seen, layout, Tolerance(percent=1)).intervals
+    assert found == (pytest.approx((1000 - reach, 1000 + reach), rel=HALVED),)

@@ -41,6 +41,8 @@ if TYPE_CHECKING:
     from multilens.search.evaluate import evaluate as evaluate
     from multilens.search.solve import solve as solve
     from multilens.sensor import Sensor as Sensor
+    from multilens.tolerance import Tolerance as Tolerance
+    from multilens.working_range import WorkingRange as WorkingRange
 
 _HOME = {
     "Back": "back",
@@ -64,6 +66,8 @@ _HOME = {
     "Relative": "metrics",
     "Scene": "scene",
     "ScoreProblem": "score_problem",
+    "Tolerance": "tolerance",
+    "WorkingRange": "working_range",
     "Sensor": "sensor",
     "WorstCase": "metrics",
     "area_penalty": "penalty",

@@ -27,6 +27,8 @@ from multilens.records import (
     read_problem,
 )
 from multilens.storage import Origin, write_whole
+from multilens.tolerance import Tolerance
+from multilens.working_range import WorkingRange, working_range
 
 COMPLETE, OUT_OF_TIME, INFEASIBLE, GIVEN = "complete", "time limit", "infeasible", "as given"
 
@@ -92,7 +94,7 @@ class Design:
 
     @property
     def measured(self) -> float:
-        """Share of the depths, by weight, at which anything measures, 1 unless cues may fail; NaN if infeasible or without depths."""
+        """Share of the depths, by weight, at which anything measures, 1 unless cues may fail; NaN if infeasible or no Problem."""
         if not isinstance(self.problem, Problem) or self.status == INFEASIBLE:
             return nan
         return self.problem.measured(self.layout).item()
@@ -125,6 +127,20 @@ class Design:
         distance = pair_distance(self.layout.position)
         first, second = pair_indices(self.layout.count)[:, distance.argmax()].tolist()
         return distance.max().item(), (first, second)
+
+    def working_range(self, tolerance: Tolerance, span: tuple[float, float] | None = None) -> WorkingRange:
+        """Give the depths at which the error is within a tolerance: see `multilens.working_range`.
+
+        Args:
+            tolerance: largest error.
+            span: nearest and farthest depth to look at, mm; None takes the range of the problem.
+
+        Raises:
+            ValueError: nothing was found to measure with, the question has no depths, or the span is out of its range.
+        """
+        if not isinstance(self.problem, Problem) or self.status == INFEASIBLE:
+            raise ValueError("design must have a layout and depths to have a working range")
+        return working_range(self.problem, self.layout, tolerance, span)
 
     def save(self, path: str | Path) -> None:
         """Write the design to a JSON file, whole or not at all; the same design gives the same bytes.

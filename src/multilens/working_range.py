@@ -10,6 +10,8 @@ from torch import Tensor
 
 from multilens.bands import dense_depths, errors_at
 from multilens.depths import log_depths
+from multilens.field_of_view import Part
+from multilens.fusion import Best
 from multilens.layout import Layout
 from multilens.problem import Problem
 from multilens.tolerance import Tolerance
@@ -67,12 +69,12 @@ class WorkingRange:
 def working_range(
     problem: Problem, layout: Layout, tolerance: Tolerance, span: tuple[float, float] | None = None
 ) -> WorkingRange:
-    """Give the depths at which a layout's error is within a tolerance.
+    """Give the depths at which a layout's error is within a tolerance, in every part of the field that is asked for.
 
-    Each measurement is followed by itself, so that the ends are where its own error meets what is allowed: they are found by
-    halving, to the last bits. Turning points of the error between the depths that are looked at are found too; only a
-    measurement that turns twice between two of them may hide a stretch. The depths looked at are the problem's own, seven
-    between each two, and the in-focus depths.
+    Where the best measurement counts, each is followed by itself, else all together. An end is where the error meets what is
+    allowed: it is found by halving, to the last bits. Turning points of the error between the depths that are looked at are
+    found too; only one that turns twice between two of them may hide a stretch. The depths looked at are the problem's own,
+    seven between each two, and the in-focus depths. A guess of what is not measured counts for nothing here.
 
     Args:
         problem: whose cues measure, with its lenses.
@@ -87,20 +89,36 @@ def working_range(
     Raises:
         ValueError: the span is out of its range.
     """
-
-    def excess(depths: Float[Tensor, " m"]) -> Float[Tensor, "c m"]:
-        return errors_at(problem, layout, depths) / allowed_error(tolerance, depths)
-
     depths = dense_depths(problem, layout) if span is None else _spanned(layout, span)
-    depths = torch.cat([depths, _turning_points(excess, depths)]).unique()
-    found = _united(_stretches(excess, depths))
-    return WorkingRange(tolerance, depths[0].item(), depths[-1].item(), found)
+    near, far = depths[0].item(), depths[-1].item()
+    found = ((near, far),)
+    for part in problem.parts:
+        excess = _excess(problem, layout, part, tolerance)
+        looked = torch.cat([depths, _turning_points(excess, depths)]).unique()
+        found = _common(found, _united(_stretches(excess, looked)))
+    return WorkingRange(tolerance, near, far, found)
 
 
 def allowed_error(tolerance: Tolerance, depths: Float[Tensor, " m"]) -> Float[Tensor, " m"]:
     """Give the largest error that a tolerance allows at each depth, mm."""
     share = inf if tolerance.percent is None else tolerance.percent / 100
     return (depths * share).clamp(max=inf if tolerance.mm is None else tolerance.mm)
+
+
+def _excess(problem: Problem, layout: Layout, part: Part, tolerance: Tolerance) -> Excess:
+    """Give the errors of what the lenses of one part of the field measure, over what is allowed."""
+    seen = [k for k, measurement in enumerate(problem.measurements) if set(measurement.lenses) <= set(part.lenses)]
+    own, lenses = layout.to(torch.float64).only(part.lenses), [problem.lenses[index] for index in part.lenses]
+
+    def errors(depths: Float[Tensor, " m"]) -> Float[Tensor, "c m"]:
+        if not seen:
+            return torch.full_like(depths, inf).unsqueeze(0)
+        if isinstance(problem.fusion, Best):
+            return errors_at(problem, layout, depths)[seen]
+        with torch.no_grad():
+            return problem.fusion.squared_error(problem.cues, own, lenses, depths).sqrt().unsqueeze(0)
+
+    return lambda depths: errors(depths) / allowed_error(tolerance, depths)
 
 
 def _spanned(layout: Layout, span: tuple[float, float]) -> Float[Tensor, " m"]:
@@ -171,3 +189,11 @@ def _united(stretches: list[tuple[float, float]]) -> tuple[tuple[float, float], 
         else:
             united.append((near, far))
     return tuple(united)
+
+
+def _common(
+    first: tuple[tuple[float, float], ...], second: tuple[tuple[float, float], ...]
+) -> tuple[tuple[float, float], ...]:
+    """Give what lies in stretches of both."""
+    both = ((max(a[0], b[0]), min(a[1], b[1])) for a in first for b in second)
+    return tuple(sorted((near, far) for near, far in both if near <= far))
