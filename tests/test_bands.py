@@ -4,7 +4,8 @@ import pytest
 import torch
 
 from multilens.back import Back
-from multilens.bands import dense_depths, winner_bands
+from multilens.bands import NOTHING, dense_depths, winner_bands
+from multilens.cues import LimitedStereo, PairLimits
 from multilens.depths import linear_depths, log_depths
 from multilens.layout import Layout
 from multilens.lens import Lens
@@ -72,3 +73,21 @@ def test_dense_depths_hold_the_problems_own():
     problem = problem_of(1, [900.0, 300.0, 300.0])
     depths = dense_depths(problem, Layout([(0, 0)], [1.0], [555.5]))
     assert {300.0, 555.5, 900.0} <= set(depths.tolist())
+
+
+def limited(depths, **limits):
+    return Problem(BACK, [LENS] * 3, depths, cues=[LimitedStereo(PairLimits(**limits))])
+
+
+def test_pairs_take_over_where_they_begin_to_work_and_nothing_measures_before():
+    # A parallax of 0.6 / 6 = 0.1: baselines of 30, 60 and 90 mm work from 300, 600 and 900 mm on.
+    layout = Layout([(0, 0), (30, 0), (90, 0)], [1.0] * 3, [800.0] * 3)
+    bands = winner_bands(limited(log_depths(200, 2000, 40), max_disparity=0.6), layout)
+    assert [band.measurement.label for band in bands] == ["nothing", "stereo 1-2", "stereo 2-3", "stereo 1-3"]
+    assert [band.near for band in bands] == pytest.approx([200, 300, 600, 900], rel=RELATIVE_ROUNDING)
+
+
+def test_where_nothing_ever_measures_there_is_one_band_of_nothing():
+    layout = Layout([(0, 0), (30, 0), (90, 0)], [1.0] * 3, [800.0] * 3)
+    (band,) = winner_bands(limited([200.0, 250.0], max_disparity=0.6), layout)
+    assert (band.near, band.far, band.measurement) == (200.0, 250.0, NOTHING)

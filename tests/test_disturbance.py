@@ -1,5 +1,7 @@
 """Samples of devices, against the distribution they are drawn from."""
 
+from typing import Any
+
 import pytest
 import torch
 
@@ -53,6 +55,6 @@ def test_a_device_is_built_off_its_layout_by_its_own_shift_and_vergence():
         ({"covered": 1.5}, "covered must be from 0 to 1, got 1.5"),
     ],
 )
-def test_a_disturbance_that_makes_no_sense_is_refused(given: dict[str, float], message: str):
+def test_a_disturbance_that_makes_no_sense_is_refused(given: dict[str, Any], message: str):
     with pytest.raises(ValueError, match=message):
         Disturbance(**given)

@@ -20,14 +20,18 @@ HALVINGS = 60
 """Of the interval that holds a crossing: more than the bits of a double."""
 
 
+NOTHING = Measurement("none", (), None, "nothing")
+"""Stands where every measurement fails."""
+
+
 @dataclass(frozen=True)
 class Band:
-    """A range of depths over which one measurement is the best.
+    """A range of depths over which one measurement is the best, or every one fails.
 
     Args:
         near: nearest depth of the band, mm.
         far: farthest depth, mm, where the next band begins; equal to near where a problem has a single depth.
-        measurement: the winner.
+        measurement: the winner, or NOTHING.
     """
 
     near: float
@@ -58,14 +62,14 @@ def winner_bands(problem: Problem, layout: Layout) -> tuple[Band, ...]:
         At least one band; the first begins at the least depth of the problem and the last ends at the largest.
     """
     depths = dense_depths(problem, layout)
-    winner = _leader(errors_at(problem, layout, depths))
+    winner = _leader(_or_nothing(problem, layout, depths))
     changes = (winner[1:] != winner[:-1]).nonzero().squeeze(-1)
     leads = [_Lead(depths[0].item(), int(winner[0]))]
     leads += _crossings(problem, layout, depths[changes], winner[changes], depths[changes + 1], winner[changes + 1])
     ends = [lead.depth for lead in leads[1:]] + [depths[-1].item()]
     bands: list[Band] = []
     for lead, end in zip(leads, ends, strict=True):
-        measurement = problem.measurements[lead.winner]
+        measurement = (*problem.measurements, NOTHING)[lead.winner]
         if bands and (end == lead.depth or bands[-1].measurement == measurement):
             # Two crossings at one depth: the band between them is empty, and its neighbours may be one.
             bands[-1] = replace(bands[-1], far=end)
@@ -105,6 +109,12 @@ def errors_at(problem: Problem, layout: Layout, depths: Float[Tensor, " m"]) -> 
         return torch.cat([cue(exact, problem.lenses, depths) for cue in problem.cues], dim=-2)
 
 
+def _or_nothing(problem: Problem, layout: Layout, depths: Float[Tensor, " m"]) -> Float[Tensor, "_ m"]:
+    """Give the errors and below them a row for NOTHING: worse than what measures, better than what fails."""
+    errors = errors_at(problem, layout, depths)
+    return torch.cat([errors, torch.full_like(errors[:1], torch.finfo(errors.dtype).max / 2)])
+
+
 def _leader(errors: Float[Tensor, "k m"]) -> Int[Tensor, " m"]:
     least = errors.amin(0)
     return (errors <= least * (1 + TIE)).int().argmax(0)
@@ -125,10 +135,10 @@ def _crossings(
     column = torch.arange(len(near))
     for _ in range(HALVINGS):
         middle = (low + high) / 2
-        errors = errors_at(problem, layout, middle)
+        errors = _or_nothing(problem, layout, middle)
         still = errors[before, column] <= errors[after, column]
         low, high = low.where(~still, middle), high.where(still, middle)
-    errors = errors_at(problem, layout, high)
+    errors = _or_nothing(problem, layout, high)
     third = _leader(errors)
     two = torch.minimum(errors[before, column], errors[after, column])
     split = (third != before) & (third != after) & (errors[third, column] < two * (1 - TIE))

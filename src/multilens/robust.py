@@ -15,6 +15,7 @@ from multilens.layout import Layout
 from multilens.lens import Lens
 from multilens.metrics import Metric
 from multilens.problem import Problem
+from multilens.question import Question
 from multilens.tail import tail_mean
 
 WORST_TOLD = 8
@@ -200,6 +201,11 @@ class Robust:
         ways = torch.tensor([use.probability for use in self.uses], dtype=torch.float64)
         devices = len(self.devices.shift)
         return (ways / devices).expand(devices, -1).flatten()
+
+
+def as_drawn(question: Question) -> Question:
+    """Give the problem of a device as it is drawn where a question is asked of many devices; any other question as it is."""
+    return question.drawn if isinstance(question, Robust) else question
 
 
 def without(problem: Problem, covered: int) -> Problem:

@@ -23,7 +23,7 @@ def double(number: float) -> Tensor:
 
 
 def image(point: Tensor, depth: Tensor, lens: Tensor, sensor: Tensor, f: float) -> Tensor:
-    """Follow the ray from a point through the middle of a lens to a sensor f behind: where it lands, seen from the sensor's middle."""
+    """Follow the ray from a point through the middle of a lens to a sensor f behind, to where it lands on it."""
     return lens + (lens - point) * f / depth - sensor
 
 

@@ -4,6 +4,7 @@ import pytest
 import shapely
 
 from multilens.back import Back
+from multilens.cues import LimitedStereo, PairLimits
 from multilens.depths import linear_depths, log_depths
 from multilens.geometry.shape import disc, rectangle
 from multilens.layout import Layout
@@ -52,6 +53,11 @@ def tiers():
     return problem, Layout([(10, 10), (36, 25)], [1.93] * 2, [[300, 700, 1500, 4000], [500] * 4])
 
 
+def limited():
+    cues = [LimitedStereo(PairLimits(max_disparity=0.738))]
+    return Problem(PHONE, [lens(5.8)] * 4, DEPTHS, cues=cues), Layout(ON_PHONE[:4], [1.93] * 4, FOCI[:4])
+
+
 def unit_square():
     problem = ScoreProblem(Back.rectangle(1, 1), [Lens(1, (0.01, 0.5))] * 9, lambda layout: -layout.aperture_radius)
     return problem, Layout([(0.2 + 0.3 * (i % 3), 0.2 + 0.3 * (i // 3)) for i in range(9)], [0.1] * 9, [1.0] * 9)
@@ -65,6 +71,7 @@ CASES |= {
     "long line": on(Back.rectangle(120, 3), [(2, 1.5), (118, 1.5), (30, 1.5), (33, 1.5)], 0.5, 0.5),
     "tiny lenses": on(PHONE, [(12, 9.5), (65, 150), (14, 9.5), (14, 11.5), (12, 11.5)], 0.0, 0.3),
     "tiers": tiers(),
+    "limited": limited(),
     "thesis line": thesis_line(),
     "unit square": unit_square(),
 }

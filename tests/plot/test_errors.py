@@ -3,6 +3,7 @@ from itertools import combinations
 
 import numpy as np
 import pytest
+import torch
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
@@ -54,6 +55,14 @@ def test_every_winner_is_named_where_there_is_room(cases):
     assert {band.measurement.label for band in winner_bands(*cases["island 4"])} <= set(words)
 
 
+def test_where_nothing_measures_there_is_no_bold_line_and_the_bar_says_so(cases):
+    problem, layout = cases["limited"]
+    near = 1000 * float(torch.pdist(layout.position).min()) * 6.86 / 738
+    bold = [line.get_xdata() for line in drawn(draw_errors, problem, layout).axes[0].lines if line.get_linewidth() == 3]
+    assert min(x.min() for x in bold) == pytest.approx(near)
+    assert "nothing" in [text.get_text() for text in drawn(draw_winners, problem, layout).axes[0].texts]
+
+
 def test_crossings_are_written_below_the_bar(cases):
     problem, layout = cases["thesis line"]
     words = [text.get_text() for text in drawn(draw_winners, problem, layout).axes[0].texts]
@@ -79,8 +88,8 @@ def test_the_bold_line_is_never_above_a_thin_one(measured):
     thin = [line.get_xydata() for line in ax.lines if line.get_linewidth() == 0.8]
     assert len(thin) == len(measured[0].measurements)
     for part in bold:
-        for curve in thin:
-            assert (part[:, 1] <= np.interp(part[:, 0], *curve.T) * (1 + 1e-6)).all()
+        for curve in (curve[np.isfinite(curve[:, 1])] for curve in thin):
+            assert (part[:, 1] <= np.interp(part[:, 0], *curve.T, left=np.inf, right=np.inf) * (1 + 1e-6)).all()
 
 
 def test_the_zeros_of_defocus_do_not_stretch_a_logarithmic_axis(cases):

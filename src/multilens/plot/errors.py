@@ -11,7 +11,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter, NullLocator
 
-from multilens.bands import Band, dense_depths, errors_at, winner_bands
+from multilens.bands import NOTHING, Band, dense_depths, errors_at, winner_bands
 from multilens.cues import Measurement
 from multilens.layout import Layout
 from multilens.plot.canvas import paper_size, text_size
@@ -39,7 +39,7 @@ def draw_errors(ax: Axes, problem: Problem, layout: Layout) -> None:
     """Draw the error of every measurement against depth, thin, the least of them bold, and their root mean square.
 
     The bold line has the colour of the measurement that is best there. In focus a lens' error is 0, which a logarithmic axis
-    cannot show: the dips are cut at the lower edge.
+    cannot show: the dips are cut at the lower edge. A measurement has no line where it fails.
 
     Args:
         ax: drawn on; logarithmic where the depths span more than a factor 4.
@@ -49,6 +49,7 @@ def draw_errors(ax: Axes, problem: Problem, layout: Layout) -> None:
     depths = dense_depths(problem, layout)
     errors = errors_at(problem, layout, depths).numpy()
     at, least = depths.numpy(), errors.min(axis=0)
+    errors, least = (np.where(np.isfinite(curve), curve, np.nan) for curve in (errors, least))
     rmse = sqrt(problem.score(layout).item())
     logarithmic = _set_depth_axis(ax, problem)
     bottom, top = _error_limits(errors, least, rmse, logarithmic)
@@ -60,9 +61,13 @@ def draw_errors(ax: Axes, problem: Problem, layout: Layout) -> None:
         look = {"color": measurement_colour(measurement), "dashes": measurement_dashes(measurement)}
         ax.plot(at, row, linewidth=0.8, alpha=0.65, zorder=2, **look)
     # Widest first: a narrow dip must not drown in the round ends of its neighbours.
-    for band in sorted(winner_bands(problem, layout), key=lambda band: band.near / band.far):
+    measured = [band for band in winner_bands(problem, layout) if band.measurement != NOTHING]
+    for band in sorted(measured, key=lambda band: band.near / band.far):
         part = (at >= band.near) & (at <= band.far)
-        ends = np.interp([band.near, band.far], at, least)
+        # A band that begins where others fail has no least error before it.
+        own = errors[problem.measurements.index(band.measurement)]
+        curves = ((at, least), (at[np.isfinite(own)], own[np.isfinite(own)]))
+        ends = np.fmin(*(np.interp([band.near, band.far], *curve) for curve in curves))
         x, y = np.r_[band.near, at[part], band.far], np.maximum(np.r_[ends[0], least[part], ends[1]], floor)
         look = {"color": measurement_colour(band.measurement), "solid_capstyle": "round", "zorder": 3}
         ax.plot(x, y, linewidth=3.0, marker="o" if len(at) == 1 else None, **look)
@@ -164,13 +169,15 @@ def _error_limits(
     errors: Float[np.ndarray, "k m"], least: Float[np.ndarray, " m"], rmse: float, logarithmic: bool
 ) -> tuple[float, float]:
     """Give limits that show the least error and the root mean square well, and the others as far as that goes."""
-    highest = max(least.max(), rmse) or 1.0
+    # Where nothing measures at all, only the root mean square is left to show.
+    worst, largest = (np.nanmax(np.append(curve, 0.0)) for curve in (least, errors))
+    highest = max(worst, rmse) or 1.0
     if not logarithmic:
-        return 0.0, 1.05 * min(errors.max() or 1.0, 2.5 * highest)
+        return 0.0, 1.05 * min(largest or 1.0, 2.5 * highest)
     positive = least[least > 0]
     typical = np.quantile(positive, 0.05) if len(positive) else highest
     bottom = max(typical / 3, 1e-5 * highest)
-    return min(bottom, 0.3 * highest), 1.3 * min(errors.max() or 1.0, 10 * highest)
+    return min(bottom, 0.3 * highest), 1.3 * min(largest or 1.0, 10 * highest)
 
 
 def _draw_legend(ax: Axes, problem: Problem, rmse: float) -> None:
@@ -211,6 +218,8 @@ def _name_bands(strip: _Strip, bands: Sequence[Band]) -> tuple[int, bool]:
 
 
 def _short_name(measurement: Measurement) -> str:
+    if not measurement.lenses:
+        return measurement.label
     lenses = "-".join(str(lens + 1) for lens in measurement.lenses)
     return lenses if " tier " not in measurement.label else f"{lenses}/{(measurement.tier or 0) + 1}"
 

@@ -71,8 +71,11 @@ def lens_colour(lens: int) -> str:
 def measurement_colour(measurement: Measurement) -> str:
     """Give the colour of a measurement: of a lens its own, a tint of it for its later tiers; of a pair a near-neutral one.
 
+    Nothing at all is the grey of rules.
     It depends on the measurement alone, so that adding a lens recolours nothing.
     """
+    if not measurement.lenses:
+        return RULE
     if len(measurement.lenses) == 1:
         tier = measurement.tier or 0
         return tint(lens_colour(measurement.lenses[0]), TIER_TINTS[tier % len(TIER_TINTS)])

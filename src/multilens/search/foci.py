@@ -7,6 +7,8 @@ from torch import Generator, Tensor
 from multilens.cues import LensDefocus
 from multilens.problem import Problem
 from multilens.question import Question
+from multilens.robust import as_drawn
+from multilens.search.piercing import Piercing
 from multilens.search.refocus import refocus
 from multilens.search.stretches import Stretches
 from multilens.search.variables import Variables
@@ -18,6 +20,9 @@ DEALT = 7
 class Foci:
     """Chooses foci for layouts.
 
+    Of a question that is asked of many devices, foci are tried on the one that is as drawn, which takes a fraction of the time;
+    all of them decide what is kept.
+
     Args:
         question: what is asked.
         variables: how a vector becomes a layout.
@@ -25,13 +30,15 @@ class Foci:
     """
 
     def __init__(self, question: Question, variables: Variables, generator: Generator) -> None:
-        self.question, self.variables, self.generator = question, variables, generator
+        self.asked, self.question = question, as_drawn(question)
+        self.variables, self.generator = variables, generator
         device = variables.low.device
         self.columns = variables.free[variables.free >= variables.focus_start]
-        self.stretches: Stretches | None = None
-        if isinstance(question, Problem) and len(self.columns) and question.has_closed_form and _has_defocus(question):
-            self.closed_form = question.closed_form(device)
-            self.stretches = Stretches(question.depths.to(device), question.score_weights.to(device))
+        self.stretches: Stretches | Piercing | None = None
+        if isinstance(drawn := self.question, Problem) and len(self.columns) and _is_shared_out(drawn):
+            self.closed_form = drawn.closed_form(device)
+            kind = Stretches if drawn.metric.is_mean else Piercing
+            self.stretches = kind(drawn.depths.to(device), drawn.score_weights.to(device))
 
     def afresh(self, share: Float[Tensor, "b v"]) -> Float[Tensor, "b v"]:
         """Give the layouts with foci that do not depend on those they have."""
@@ -50,9 +57,12 @@ class Foci:
     def improved(self, share: Float[Tensor, "b v"]) -> Float[Tensor, "b v"]:
         """Give the layouts with better foci, every fourth of them with foci shared out anew."""
         if self.stretches is not None:
-            share = share.clone()
+            before, share = share, share.clone()
             share[::4] = self._shared_out(share[::4], self._any_order(len(share[::4])))
-        return self._one_by_one(share, afresh=False)
+        else:
+            before = share
+        better = self._one_by_one(share, afresh=False)
+        return better if self.asked is self.question else self._agreed(before, better)
 
     def best_for(self, share: Float[Tensor, " v"]) -> Float[Tensor, " v"]:
         """Give one layout with the best foci of several ways to choose them; never worse than it was."""
@@ -63,8 +73,16 @@ class Foci:
         dealt = self._shared_out(share.expand(1 + DEALT, -1), orders)
         tried = torch.cat([share.unsqueeze(0), dealt, self._one_by_one(dealt, afresh=False)])
         with torch.no_grad():
-            scores = self.question.terms(self.variables.layout_of(tried)).amax(-1)
-            return tried[scores.nan_to_num(nan=torch.inf).argmin()]
+            return tried[self._minimised(tried).argmin()]
+
+    def _agreed(self, before: Tensor, after: Tensor) -> Tensor:
+        """Give of each layout what scores less by the question itself."""
+        with torch.no_grad():
+            better = self._minimised(after) < self._minimised(before)
+        return torch.where(better.unsqueeze(-1), after, before)
+
+    def _minimised(self, share: Tensor) -> Tensor:
+        return self.asked.terms(self.variables.layout_of(share)).amax(-1).nan_to_num(nan=torch.inf)
 
     def _one_by_one(self, share: Tensor, afresh: bool) -> Tensor:
         order = torch.rand(len(self.variables.low) - self.variables.focus_start, generator=self.generator)
@@ -87,5 +105,5 @@ class Foci:
         return share
 
 
-def _has_defocus(problem: Problem) -> bool:
-    return any(isinstance(cue, LensDefocus) for cue in problem.cues)
+def _is_shared_out(problem: Problem) -> bool:
+    return problem.is_envelope and any(isinstance(cue, LensDefocus) for cue in problem.cues)

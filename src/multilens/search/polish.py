@@ -9,7 +9,6 @@ import torch
 from jaxtyping import Float
 from torch import Tensor
 
-from multilens.problem import Problem
 from multilens.question import Question
 from multilens.search.alone import Alone
 from multilens.search.variables import Variables
@@ -67,7 +66,7 @@ def polish(
     alone = Alone(question, variables)
     first, _ = alone.terms(x.numpy())
     # Of a squared error the logarithm is minimised: the tolerance is then a part of it. A score of one's own may be negative.
-    one = isinstance(question, Problem) and first[0] > 0
+    one = question.metric is not None and first[0] > 0
     scale = max(float(np.abs(first).max()), float(np.finfo(float).tiny))
 
     def terms(vector: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

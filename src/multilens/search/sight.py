@@ -25,7 +25,7 @@ class Sight:
 
     Args:
         share: where, every unknown from 0 to its upper end, free or not.
-        value: what is minimised: the logarithm of the score, or a soft maximum of several terms.
+        value: what is minimised: the logarithm of the score, or a soft maximum of several terms or their logarithms.
         slope: its gradient, 0 for what is not free.
         room: left at every pair of lenses, then at every lens and edge.
         pull: gradient of a pair's room in (x, y, radius) of its first lens.
@@ -64,7 +64,7 @@ class Seer:
         self.unit = question.back.size / 4
         """mm"""
         self.scale: float | None = None
-        """Size of the terms; None while, or where, the logarithm of the only one is taken."""
+        """Size of the terms; None while, or where, their logarithm is taken."""
         self.calibrated = False
         n = self.n = variables.count
         self.size = len(variables.low)
@@ -82,7 +82,7 @@ class Seer:
         """Where each number of each lens' block with each lens stands in a flat matrix."""
 
     def calibrate(self, share: Float[Tensor, "b v"]) -> None:
-        """Choose once what is minimised: the logarithm of a squared error, or terms in units of their size.
+        """Choose once what is minimised: the logarithm of squared errors, or terms in units of their size.
 
         Args:
             share: vectors whose terms are typical.
@@ -93,7 +93,7 @@ class Seer:
             terms = self.question.terms(self.variables.layout_of(share))
         self.calibrated = True
         # A score of one's own may become negative on the way, whatever it is here.
-        if not isinstance(self.question, Problem) or not (terms > 0).all():
+        if self.question.metric is None or not (terms.amax(-1) > 0).all():
             scale = terms.abs().amax(-1).nanmedian().item()
             self.scale = scale if isfinite(scale) and scale > 0 else 1.0
 
@@ -130,9 +130,10 @@ class Seer:
         return value.detach(), slope * self.free
 
     def _minimised(self, terms: Float[Tensor, "b m"], width: float) -> Float[Tensor, " b"]:
-        if self.scale is None:
-            return terms[..., 0].clamp(min=LEAST_SCORE).log()
-        return soft_maximum(terms / self.scale, width)
+        if self.scale is not None:
+            return soft_maximum(terms / self.scale, width)
+        logarithm = terms.clamp(min=max(LEAST_SCORE, torch.finfo(terms.dtype).tiny)).log()
+        return logarithm[..., 0] if terms.shape[-1] == 1 else soft_maximum(logarithm, width)
 
     def along(self, sight: Sight, step: Float[Tensor, "b v"]) -> Float[Tensor, "b m"]:
         """Give by how much each room grows along a step, to first order."""
