@@ -14,7 +14,7 @@ from multilens.fusion import InverseVariance
 LENS = Lens(6.0, (0.5, 3.0), disparity_noise=0.0002, blur_noise=0.0002)
 DEPTHS = torch.tensor([400.0, 700.0, 950.0, 1600.0], dtype=torch.float64)
 LAYOUT = Layout([[0.0, 0.0], [12.0, 0.0], [0.0, 5.0]], [2.0, 2.0, 2.0], [500.0, 900.0, 1500.0])
-DRIFT = Drift(shift=0.02, decentre_um=0.15, focus_dioptre=0.003)
+DRIFT = Drift(shift=0.02, decentre_um=0.15, focus_dioptre=0.005)
 
 
 def normal(*shape: int) -> Tensor:
@@ -27,7 +27,7 @@ def test_the_score_of_drifted_cues_is_the_mean_over_devices_that_trust_their_bes
     trusted = problem.winners(LAYOUT)
     devices = 200_000
     moved, decentred = 0.02 * normal(devices, 3, 2), 0.15e-3 * normal(devices, 3, 2).flip(0)
-    vergence = 3e-6 * normal(devices, 3).flip(0)
+    vergence = 5e-6 * normal(devices, 3).flip(0)
     total = 0.0
     for z, k in zip(DEPTHS, trusted.tolist(), strict=True):
         measurement = problem.measurements[k]
