@@ -13,8 +13,8 @@ LONGEST_SHOWN = 40
 """Characters of what was found that a message repeats."""
 
 
-def record(value: object, name: str, keys: Sequence[str]) -> dict[str, Any]:
-    """Take a record that must have exactly these keys.
+def record(value: object, name: str, keys: Sequence[str], optional: Sequence[str] = ()) -> dict[str, Any]:
+    """Take a record that must have these keys, may have the optional ones, and no others.
 
     Raises:
         ValueError: it is no record, a key is missing or one is unknown.
@@ -22,8 +22,9 @@ def record(value: object, name: str, keys: Sequence[str]) -> dict[str, Any]:
     if not isinstance(value, dict):
         raise ValueError(f"{name} must be a record with {', '.join(keys)}, got {_shown(value)}")
     for key in value:
-        if key not in keys:
-            raise ValueError(f"{name} must have the keys {', '.join(keys)}, got the unknown key {_shown(key)}")
+        if key not in keys and key not in optional:
+            known = ", ".join([*keys, *optional])
+            raise ValueError(f"{name} must have the keys {known}, got the unknown key {_shown(key)}")
     for key in keys:
         if key not in value:
             raise ValueError(f"{name} must have the keys {', '.join(keys)}, got none called {key}")
@@ -85,6 +86,17 @@ def text(value: object, name: str) -> str:
     """
     if not isinstance(value, str):
         raise ValueError(f"{name} must be a text, got {_shown(value)}")
+    return value
+
+
+def flag(value: object, name: str) -> bool:
+    """Take true or false.
+
+    Raises:
+        ValueError: it is neither.
+    """
+    if not isinstance(value, bool):
+        raise ValueError(f"{name} must be true or false, got {_shown(value)}")
     return value
 
 
