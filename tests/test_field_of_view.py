@@ -1,6 +1,7 @@
 """Fields: who sees how much, against areas, points and hand-worked angles; scores over a field, against angles one by one."""
 
 import math
+from dataclasses import replace
 
 import pytest
 import torch
@@ -8,7 +9,21 @@ from hypothesis import given
 from hypothesis import strategies as st
 from torch.autograd import gradcheck
 
-from multilens import Back, Field, Layout, Lens, PairStereo, Problem, WorstCase, log_depths, solve
+from multilens import (
+    Back,
+    Design,
+    Field,
+    Layout,
+    Lens,
+    LensDefocus,
+    LimitedStereo,
+    PairLimits,
+    PairStereo,
+    Problem,
+    WorstCase,
+    log_depths,
+    solve,
+)
 from multilens.field_of_view import Part
 
 
@@ -154,3 +169,13 @@ def test_a_search_gives_the_edge_of_the_field_to_the_wide_lenses():
     problem = Problem(BACK, LENSES, DEPTHS, cues=[PairStereo()], field=Field([0.0, 30.0]))
     position = solve(problem, starts=8, patience=0, proof=0).layout.position
     assert torch.dist(position[0], position[2]).item() == pytest.approx(math.hypot(69, 149), rel=1e-3)
+
+
+def test_a_design_with_limits_and_a_field_comes_back_from_its_file(tmp_path):
+    cues = [LimitedStereo(PairLimits(0.7, 0.5)), LensDefocus()]
+    lenses = [replace(lens, near_focus=150.0) for lens in LENSES]
+    design = solve(Problem(BACK, lenses, DEPTHS, cues=cues, field=RING), starts=2, patience=0, proof=0)
+    design.save(tmp_path / "design.json")
+    problem = Design.load(tmp_path / "design.json").problem
+    assert isinstance(problem, Problem)
+    assert (problem.cues, problem.field, problem.lenses) == (tuple(cues), RING, tuple(lenses))

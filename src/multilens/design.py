@@ -8,6 +8,7 @@ from typing import Any
 from multilens.bounds.bound import Bound
 from multilens.certificate import Certificate, certify
 from multilens.convergence import Convergence
+from multilens.coverage import coverage_in_words
 from multilens.documents import document, document_content, read_text
 from multilens.fields import choice, number, record, text, whole_number
 from multilens.geometry.pairs import pair_distance, pair_indices
@@ -285,6 +286,8 @@ class Design:
             facts["RMSE"] = f"{self.rmse:.6g} mm"
             if self.measured < 1:
                 facts["measured"] = f"{100 * self.measured:.3g} % of the depths"
+            if self.problem.field is not None:
+                facts["depths and field"] = coverage_in_words(self.problem, self.layout)
         if self.longest_baseline is not None:
             baseline, (first, second) = self.longest_baseline
             facts["longest baseline"] = f"{baseline:.3f} mm, lens {first + 1} to lens {second + 1}"
