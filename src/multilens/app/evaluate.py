@@ -15,8 +15,9 @@ if TYPE_CHECKING:
     from multilens.design import Design
     from multilens.problem import Problem
 
-QUESTION = ("depth", "cues")
-"""Parts of a configuration under which a stored layout can be scored anew; the rest is the hardware, which it has."""
+QUESTION = {"depth": ("depths", "weights"), "field_of_view": ("field",), "cues": ("cues",)}
+"""Parts of a configuration under which a stored layout can be scored anew, and what they are of a problem; the rest is the
+hardware, which it has."""
 
 OUT = "out"
 
@@ -105,7 +106,7 @@ def _of_configuration(given: Given) -> "Design":
             f"or the places of all as lenses.places=[[x,y],...], in mm"
         )
     try:
-        return evaluate(problem)
+        return replace(evaluate(problem), problem=build.build_question(given.config))
     except ValueError as error:
         raise RefusedError(one_line(str(error))) from None
 
@@ -128,13 +129,9 @@ def _asked_anew(problem: "Problem", given: Given) -> "Problem":
     """Give the problem of a stored layout with those parts of the question that the words name."""
     parts = {key.lstrip("+~").split(".")[0] for key in given.keys}
     for part in sorted(parts - set(QUESTION)):
-        raise RefusedError(f"{part}: a stored layout can be scored under another {' or '.join(QUESTION)}, got {part}")
+        raise RefusedError(f"{part}: a stored layout can be scored under another {', '.join(QUESTION)}, got {part}")
     anew = build.build_problem(given.config)
-    others = {}
-    if "depth" in parts:
-        others |= {"depths": anew.depths, "weights": anew.weights}
-    if "cues" in parts:
-        others["cues"] = anew.cues
+    others = {name: getattr(anew, name) for part in parts for name in QUESTION[part]}
     # A lens that could focus where the depths were still could: its bounds are hardware.
     pairs = zip(problem.lenses, problem.focus_range, strict=True)
     return replace(problem, lenses=[replace(lens, focus=focus) for lens, focus in pairs], **others)
