@@ -83,6 +83,11 @@ def test_the_factor_is_one_well_inside(position, given_lenses, disparity, overla
     assert (limits.factor(layout, given_lenses, DEPTHS)[beyond] == 1).all()
 
 
+def test_the_near_focus_is_sharp():
+    depths = torch.tensor([399.0, 400.0], dtype=torch.float64)
+    assert PairLimits().factor(apart(10.0), [WIDE, TELE], depths).tolist() == [[0, 1]]
+
+
 def test_the_factor_has_a_gradient_where_it_rises_and_none_elsewhere():
     position = torch.tensor([[0.0, 0.0], [20.0, 0.0]], dtype=torch.float64, requires_grad=True)
     layout = Layout(position, torch.ones(2).double(), torch.ones(2).double())

@@ -63,11 +63,11 @@ class PairLimits:
     def factor(
         self, layout: Layout, lenses: Sequence[Lens], depths: Float[Tensor, " z"]
     ) -> Float[Tensor, "*batch p z"]:
-        """Give 0 wherever a pair may not be used, 1 well inside its limits, and a smooth rise between them.
+        """Give 0 wherever a pair may not be used, 1 well inside its limits, and a smooth rise in the baseline between them.
 
-        It is step((1 - b / (P Z)) / RAMP) step((1 - N / Z) / RAMP), with P the largest parallax and N the near focus: 1 from a
-        ninth beyond each limit on. An error divided by it is never less than it was. Its derivative is continuous, and 0 where
-        it is 0 or 1.
+        With P the largest parallax it is step((1 - b / (P Z)) / RAMP): 1 from a ninth beyond the depth b / P on. An error divided
+        by it is never less than it was. Its derivative is continuous, and 0 where it is 0 or 1. The near focus needs no rise: no
+        layout moves it, and a search would only pay for what it cannot change.
 
         Args:
             layout: of these lenses.
@@ -79,7 +79,8 @@ class PairLimits:
         """
         largest_parallax, near_focus = self._of_pairs(lenses, layout)
         by_parallax = pair_distance(layout.position) / largest_parallax
-        return _rise(by_parallax.unsqueeze(-1), depths) * _rise(near_focus.unsqueeze(-1), depths)
+        within = smooth_step((1 - by_parallax.unsqueeze(-1) / depths) / RAMP)
+        return within * (depths >= near_focus.unsqueeze(-1))
 
     def _of_pairs(self, lenses: Sequence[Lens], layout: Layout) -> tuple[Float[Tensor, " p"], Float[Tensor, " p"]]:
         """Give the largest parallax and the near focus of every pair, which no layout changes."""
@@ -96,10 +97,6 @@ class PairLimits:
             disparity = disparity_parallax(focal_length[first], focal_length[second], self.max_disparity)
             largest = largest.minimum(disparity)
         return largest, near_focus[first].maximum(near_focus[second])
-
-
-def _rise(nearest: Float[Tensor, "*batch p 1"], depths: Float[Tensor, " z"]) -> Float[Tensor, "*batch p z"]:
-    return smooth_step((1 - nearest / depths) / RAMP)
 
 
 def _half_field_tangent(lens: Lens) -> float:
