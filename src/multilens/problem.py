@@ -209,7 +209,7 @@ class Problem:
         return self.is_envelope and self.metric.is_mean
 
     def closed_form(self, device: torch.device) -> ClosedForm:
-        """Give the score with its gradient as one function; only where `has_closed_form`."""
+        """Give the score with its gradient as one function, where `has_closed_form`; where it `is_envelope`, its line and Vs hold."""
         if device not in self._closed_forms:
             moments = DepthMoments(self.depths, self.score_weights).to(device)
             self._closed_forms[device] = ClosedForm(self.lenses, self.cues, moments)

@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 from scipy.optimize import approx_fprime
 
 import multilens as ml
-from multilens.search.alone import MOST_EDGES_WATCHED, MOST_PAIRS_WATCHED, Alone
+from multilens.search.alone import MOST_EDGES_WATCHED, MOST_PAIRS_WATCHED, MOST_TERMS_WATCHED, Alone
 from multilens.search.limits import Limits
 from multilens.search.starts import scattered_starts
 from multilens.search.variables import Variables
@@ -60,9 +60,26 @@ def test_terms_of_a_score_of_ones_own_have_a_row_of_gradient_each() -> None:
     lens = ml.Lens(1.0, (0.5, 2.5))
     problem = ml.ScoreProblem(ml.Back.rectangle(9, 5), [lens] * 2, lambda layout: -layout.aperture_radius)
     alone, variables, x = drawn(problem, 0)
+    assert alone.watch(x.numpy())
     values, gradient = alone.terms(x.numpy())
     np.testing.assert_array_equal(values, -variables.layout(x).aperture_radius.numpy())
     np.testing.assert_array_equal(gradient, [[0, 0, 0, 0, -2, 0], [0, 0, 0, 0, 0, -2]])
+
+
+def test_of_very_many_terms_the_largest_are_watched_first_and_the_others_when_they_become_so() -> None:
+    lens = ml.Lens(1.0, (0.5, 0.5))
+    level = torch.linspace(-1, 1, 201, dtype=torch.float64)
+    problem = ml.ScoreProblem(
+        ml.Back.rectangle(9, 9), [lens], lambda layout: level * (layout.position[..., 0, :1] - 4.5)
+    )
+    variables = Variables(problem)
+    alone, (right, left) = Alone(problem, variables), (np.array([share, 0.5]) for share in (0.9, 0.1))
+    assert alone.watch(right)
+    assert len(alone.watched) == MOST_TERMS_WATCHED
+    assert not alone.watch(right)
+    assert alone.watch(left)
+    largest = alone.terms(left)[0].max()
+    assert largest == pytest.approx(problem.score(variables.layout(torch.from_numpy(left))).item())
 
 
 def test_room_is_that_of_the_limits(crowded: ml.Problem) -> None:

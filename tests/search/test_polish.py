@@ -32,6 +32,15 @@ def test_the_largest_of_several_terms_is_minimised() -> None:
     assert radius.min().item() == pytest.approx(1 / (1 + 2 / sqrt(3)), abs=1e-9)
 
 
+def test_the_worst_case_of_many_depths_is_minimised() -> None:
+    # Of Z abs(Z - Zf) from 500 to 900 mm the two ends are the worst: equal at Zf = (500^2 + 900^2) / (500 + 900).
+    lens = ml.Lens(1.0, (1.0, 1.0), position=(0.0, 0.0))
+    depths = ml.linear_depths(500, 900, 401)
+    problem = ml.Problem(ml.Back.disc(10.0), [lens], depths, cues=[ml.LensDefocus()], metric=ml.WorstCase())
+    layout = polished(problem, ml.Layout([[0.0, 0.0]], [1.0], [620.0]))
+    assert layout.focus.item() == pytest.approx((500**2 + 900**2) / (500 + 900), abs=1e-6)
+
+
 def test_a_lens_reaches_a_corner_where_two_edges_meet() -> None:
     problem = ml.ScoreProblem(
         ml.Back.rectangle(10, 6), [ml.Lens(1.0, (0.5, 0.5))], lambda layout: -layout.position[..., 0, :].sum(-1)

@@ -16,6 +16,9 @@ MOST_EDGES_WATCHED = 12
 MOST_PAIRS_WATCHED = 4
 """Pairs for each lens, those with the least room: few of all pairs are ever close."""
 
+MOST_TERMS_WATCHED = 96
+"""Of several terms, those that are largest: of the errors at all depths only those at a few are the worst at a time."""
+
 ValueAndGradient = tuple[Float[np.ndarray, " m"], Float[np.ndarray, "m d"]]
 
 
@@ -33,6 +36,7 @@ class Alone:
         self.free, self.stretch = variables.free.numpy(), variables.stretch.numpy()
         self.low, self.start = variables.low.numpy(), variables.focus_start
         self.columns = np.arange(self.n)
+        self.watched = np.empty(0, dtype=int)
         self.terms = self._by_autograd
         if isinstance(question, Problem) and question.has_closed_form:
             self.terms = self._over_depths
@@ -70,12 +74,21 @@ class Alone:
         gradient = np.concatenate([between, at_edges.reshape(-1, len(self.low))])
         return np.concatenate([apart, inside.ravel()]), (gradient * self.stretch)[:, self.free]
 
+    def watch(self, x: Float[np.ndarray, " d"]) -> bool:
+        """Look at the largest terms from here on, beside those so far; give whether the largest of all was not among these."""
+        with torch.no_grad():
+            every = self.question.terms(self.variables.layout(torch.from_numpy(x))).numpy()
+        overlooked = every.max() > every[self.watched].max(initial=-np.inf)
+        self.watched = np.union1d(self.watched, np.argsort(-every, kind="stable")[:MOST_TERMS_WATCHED])
+        return bool(overlooked)
+
     def _by_autograd(self, x: Float[np.ndarray, " d"]) -> ValueAndGradient:
-        """Give the terms of any question and their gradients."""
-        point = torch.from_numpy(x.copy()).requires_grad_()
-        values = self.question.terms(self.variables.layout(point))
-        rows = [torch.autograd.grad(value, point, retain_graph=True)[0] for value in values]
-        return values.detach().numpy(), torch.stack(rows).numpy()
+        """Give the terms of any question that are watched, and their gradients: one copy of x for each."""
+        points = torch.from_numpy(np.tile(x, (len(self.watched), 1))).requires_grad_()
+        each = self.question.terms(self.variables.layout(points))
+        values = each.gather(-1, torch.from_numpy(self.watched).unsqueeze(-1)).squeeze(-1)
+        (rows,) = torch.autograd.grad(values.sum(), points)
+        return values.detach().numpy(), rows.numpy()
 
     def _over_depths(self, x: Float[np.ndarray, " d"]) -> ValueAndGradient:
         """Give the score of the thesis' cues and its gradient by plain sums over the depths.

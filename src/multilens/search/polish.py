@@ -23,6 +23,9 @@ GENTLE = 0.01
 """Factor of what is minimised. SLSQP takes its curvature for 1 at first: with a small slope its first steps are short, and what
 is nearly there already stays in its basin."""
 
+ROUNDS = 8
+"""In which terms that were not watched may be found to matter."""
+
 ValueAndGradient = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
 
 
@@ -39,8 +42,9 @@ def polish(
 ) -> Float[Tensor, " d"]:
     """Take one vector to the nearest local optimum of the exact score under the exact constraints.
 
-    Where the score is the largest of several terms, one more unknown is minimised that is no less than any of them. The winner
-    of a depth may change on the way: a minimum of smooth errors has only concave kinks, and no local optimum lies on one.
+    Where the score is the largest of several terms, one more unknown is minimised that is no less than any of them. Of very many
+    only the largest are watched; where another has become the largest in the end, it is watched, too, and all is done again. The
+    winner of a depth may change on the way: a minimum of smooth errors has only concave kinks, and no local optimum lies on one.
 
     Args:
         question: what is asked.
@@ -58,15 +62,24 @@ def polish(
     Reference:
         D. Kraft, A software package for sequential quadratic programming (1988), as SciPy's SLSQP.
     """
-    from scipy.optimize import minimize
-
     if not len(x):
         return x
-    size = question.back.size
     alone = Alone(question, variables)
+    for _ in range(ROUNDS):
+        if not alone.watch(x.numpy()):
+            break
+        x = _polished(alone, x, deadline, tolerance)
+    return x
+
+
+def _polished(alone: Alone, x: Float[Tensor, " d"], deadline: float, tolerance: float) -> Float[Tensor, " d"]:
+    """Polish by the terms that are watched."""
+    from scipy.optimize import minimize
+
+    question, size = alone.question, alone.question.back.size
     first, _ = alone.terms(x.numpy())
     # Of a squared error the logarithm is minimised: the tolerance is then a part of it. A score of one's own may be negative.
-    one = question.metric is not None and first[0] > 0
+    one = question.metric is not None and first.max() > 0
     scale = max(float(np.abs(first).max()), float(np.finfo(float).tiny))
 
     def terms(vector: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -91,14 +104,14 @@ def polish(
         objective,
         np.append(x.numpy(), more),
         jac=True,
-        bounds=[(0.0, high) for high in variables.upper.tolist()] + [(None, None)] * len(more),
+        bounds=[(0.0, high) for high in alone.variables.upper.tolist()] + [(None, None)] * len(more),
         constraints={"type": "ineq", "fun": value, "jac": jacobian},
         method="SLSQP",
         options={"ftol": GENTLE * tolerance, "maxiter": 300},
     )
     if not np.isfinite(result.x).all():
         return x
-    return torch.from_numpy(result.x[: len(x)]).clamp(min=0).minimum(variables.upper)
+    return torch.from_numpy(result.x[: len(x)]).clamp(min=0).minimum(alone.variables.upper)
 
 
 def _as_one_objective(

@@ -75,7 +75,7 @@ def _by_lines(problem: Problem, variables: Variables, share: Tensor, foci: list[
     slope, zf = defocus.slope_and_focus(layout, problem.lenses)
     # Single precision, with lengths of about 1, is plenty to choose between values.
     kind = torch.float32
-    depths, weights = problem.depths.to(share), problem.weights.to(share)
+    depths, weights = problem.depths.to(share), problem.score_weights.to(share)
     unit = depths.max()
     line, weight = (depths / unit).to(kind), (weights * (depths / unit).square()).to(kind)
     steep = slope.amax(-1, keepdim=True)
@@ -87,6 +87,10 @@ def _by_lines(problem: Problem, variables: Variables, share: Tensor, foci: list[
     curves = slope.unsqueeze(-1) * (line - (zf / unit).to(kind).unsqueeze(-1)).abs()
     if afresh:
         curves[:, foci] = 1e15
+
+    def summed(squares: Tensor) -> Tensor:
+        return squares @ weight if problem.metric.is_mean else squares.mul_(weight).amax(-1)
+
     share = share.clone()
     values = torch.linspace(0, 1, VALUES).to(share)
     near, far = variables.low[variables.focus_start :], variables.high[variables.focus_start :]
@@ -99,8 +103,8 @@ def _by_lines(problem: Problem, variables: Variables, share: Tensor, foci: list[
             tried = (near[focus] * (far[focus] / near[focus]) ** values / unit).to(kind)
             shapes = (line - tried.unsqueeze(-1)).abs()
             least = torch.minimum(others.unsqueeze(1), slope[:, focus, None, None] * shapes)
-            best, at = (least.mul_(least) @ weight).min(-1)
-            now = torch.minimum(others, curves[:, focus]).square() @ weight
+            best, at = summed(least.square_()).min(-1)
+            now = summed(torch.minimum(others, curves[:, focus]).square())
             better = (best < now * (1 - 1e-6)) | (afresh and sweep == 0)
             element = variables.focus_start + focus
             share[:, element] = torch.where(better, values[at], share[:, element])

@@ -18,6 +18,10 @@ from multilens.search.variables import Variables
 LEAST_SCORE = 1e-300
 """mm^2; below it the logarithm of a score is not taken."""
 
+SOFTNESS = 0.5
+"""Width of the soft maximum of the logarithms of several squared errors. Of errors at many depths the largest is one after the other,
+and a narrow one would see one at a time; the polish makes it exact."""
+
 
 @dataclass(frozen=True)
 class Sight:
@@ -133,7 +137,7 @@ class Seer:
         if self.scale is not None:
             return soft_maximum(terms / self.scale, width)
         logarithm = terms.clamp(min=max(LEAST_SCORE, torch.finfo(terms.dtype).tiny)).log()
-        return logarithm[..., 0] if terms.shape[-1] == 1 else soft_maximum(logarithm, width)
+        return logarithm[..., 0] if terms.shape[-1] == 1 else soft_maximum(logarithm, SOFTNESS)
 
     def along(self, sight: Sight, step: Float[Tensor, "b v"]) -> Float[Tensor, "b m"]:
         """Give by how much each room grows along a step, to first order."""
