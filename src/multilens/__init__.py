@@ -18,15 +18,20 @@ if TYPE_CHECKING:
     from multilens.cues import PhotometricDefocus as PhotometricDefocus
     from multilens.cues import PhotometricStereo as PhotometricStereo
     from multilens.cues import PrintedDefocus as PrintedDefocus
+    from multilens.cues.drift import Drift as Drift
     from multilens.depths import linear_depths as linear_depths
     from multilens.depths import log_depths as log_depths
     from multilens.design import Design as Design
+    from multilens.disturbance import Disturbance as Disturbance
     from multilens.field_of_view import Field as Field
     from multilens.fusion import Best as Best
     from multilens.fusion import InverseVariance as InverseVariance
     from multilens.geometry.shape import disc as disc
     from multilens.geometry.shape import polygon as polygon
     from multilens.geometry.shape import rectangle as rectangle
+    from multilens.inverse.least import fewest_lenses as fewest_lenses
+    from multilens.inverse.least import smallest_aperture as smallest_aperture
+    from multilens.inverse.least import smallest_back as smallest_back
     from multilens.layout import Layout as Layout
     from multilens.lens import Lens as Lens
     from multilens.metrics import InverseDepth as InverseDepth
@@ -36,6 +41,7 @@ if TYPE_CHECKING:
     from multilens.penalty import area_penalty as area_penalty
     from multilens.penalty import distance_penalty as distance_penalty
     from multilens.problem import Problem as Problem
+    from multilens.robust import Robust as Robust
     from multilens.scene import Scene as Scene
     from multilens.score_problem import ScoreProblem as ScoreProblem
     from multilens.search.evaluate import evaluate as evaluate
@@ -49,6 +55,8 @@ _HOME = {
     "Best": "fusion",
     "Bound": "bounds.bound",
     "Design": "design",
+    "Disturbance": "disturbance",
+    "Drift": "cues.drift",
     "InverseDepth": "metrics",
     "InverseVariance": "fusion",
     "Field": "field_of_view",
@@ -64,6 +72,7 @@ _HOME = {
     "PrintedDefocus": "cues",
     "Problem": "problem",
     "Relative": "metrics",
+    "Robust": "robust",
     "Scene": "scene",
     "ScoreProblem": "score_problem",
     "Tolerance": "tolerance",
@@ -74,11 +83,14 @@ _HOME = {
     "disc": "geometry.shape",
     "distance_penalty": "penalty",
     "evaluate": "search.evaluate",
+    "fewest_lenses": "inverse.least",
     "linear_depths": "depths",
     "log_depths": "depths",
     "lower_bound": "bounds.bound",
     "polygon": "geometry.shape",
     "rectangle": "geometry.shape",
+    "smallest_aperture": "inverse.least",
+    "smallest_back": "inverse.least",
     "solve": "search.solve",
 }
 

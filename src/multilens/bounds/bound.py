@@ -15,6 +15,9 @@ from multilens.cues import LensDefocus, PairStereo
 from multilens.fusion import Best
 from multilens.problem import Problem
 from multilens.question import Question
+from multilens.robust import Robust
+
+NOTHING_FITS = "no layout is feasible"
 
 
 @dataclass(frozen=True)
@@ -33,6 +36,11 @@ class Bound:
     root: float | None = None
     boxes: int = 0
 
+    @property
+    def proves_that_nothing_fits(self) -> bool:
+        """Whether there is no number because there is no feasible layout."""
+        return self.reason.startswith(NOTHING_FITS)
+
 
 def lower_bound(problem: Question, boxes: int = 4000, target: float = inf) -> Bound:
     """Give a number that no feasible layout of a question scores below: see docs/bounds.md for the proof.
@@ -50,6 +58,8 @@ def lower_bound(problem: Question, boxes: int = 4000, target: float = inf) -> Bo
     """
     if boxes < 1:
         raise ValueError(f"boxes must be >= 1, got {boxes}")
+    if isinstance(problem, Robust):
+        return Bound(None, "no bound is known for many devices")
     if not isinstance(problem, Problem):
         return Bound(None, "no bound is known for a score of one's own")
     strange = [type(cue).__name__ for cue in problem.cues if type(cue) not in (PairStereo, LensDefocus)]
@@ -61,7 +71,7 @@ def lower_bound(problem: Question, boxes: int = 4000, target: float = inf) -> Bo
         return Bound(None, "no bound is known where a guess stands in for what is not measured")
     kinds = kinds_of(problem)
     if kinds is None:
-        return Bound(None, "no layout is feasible: a lens has no room even at its smallest aperture")
+        return Bound(None, f"{NOTHING_FITS}: a lens has no room even at its smallest aperture")
     present = {type(cue) for cue in problem.cues}
     left, top, right, bottom = problem.back.outline.bounds
     space = Space(
@@ -77,7 +87,7 @@ def lower_bound(problem: Question, boxes: int = 4000, target: float = inf) -> Bo
         return _bound_of_worst(problem, tree)
     found = branch(tree, boxes, target)
     if found.value == inf:
-        return Bound(None, "no layout is feasible: the smallest apertures cannot be packed", boxes=found.boxes)
+        return Bound(None, f"{NOTHING_FITS}: the smallest apertures cannot be packed", boxes=found.boxes)
     return Bound(found.value, root=found.root, boxes=found.boxes)
 
 
@@ -85,7 +95,7 @@ def _bound_of_worst(problem: Problem, tree: Tree) -> Bound:
     """Give the bound of a score that is the largest of all depths."""
     smallest = np.zeros((1, len(problem.lenses)), dtype=int)
     if tree.bounds(smallest, smallest, [])[0] == inf:
-        return Bound(None, "no layout is feasible: the smallest apertures cannot be packed", boxes=1)
+        return Bound(None, f"{NOTHING_FITS}: the smallest apertures cannot be packed", boxes=1)
     baseline, _ = pairs_of(tree.kinds, smallest, problem.gap)
     ranges = np.array(problem.focus_range)
     serving = Serving(
