@@ -32,6 +32,11 @@ def test_keys_of_one_reason_share_a_line():
     assert told({"a.b": "seen", "c": "heard", "d": "seen"}).splitlines()[1:] == ["  a.b, d: seen", "  c: heard"]
 
 
+def test_keys_that_differ_in_the_lens_alone_are_told_once():
+    marks = {"lenses.each.0.focus": "seen", "lenses.each.2.focus": "seen", "lenses.each.1.clearance": "seen"}
+    assert told(marks).splitlines()[1:] == ["  lenses.each.0,2.focus, lenses.each.1.clearance: seen"]
+
+
 def test_nothing_is_told_where_all_is_known():
     assert told({}) == ""
 

@@ -4,8 +4,11 @@ from collections.abc import Iterable, Iterator
 from typing import Any
 
 from multilens.app.keys import is_known
+from multilens.app.photometry import PHOTOMETRIC
 from multilens.app.refusal import RefusedError, one_line
 from multilens.app.schema import BackConfig, Config, LensConfig, LensesConfig
+
+EACH = "lenses.each."
 
 
 def estimates(config: Config, given: Iterable[str] = ()) -> dict[str, str]:
@@ -14,13 +17,17 @@ def estimates(config: Config, given: Iterable[str] = ()) -> dict[str, str]:
     Args:
         config: what is asked.
         given: keys that the command line sets: whatever stood there before, it is the user's own now.
+
+    Of sensors only where a photometric cue reads them.
     """
     own = {key.lstrip("+~") for key in given}
+    unused = () if PHOTOMETRIC & set(config.cues.names) else ("sensor",)
     return {
         f"{above}.{key}": one_line(reason)
         for above, part in _parts(config)
         for key, reason in part.estimates.items()
-        if not any(f"{above}.{key}.".startswith(f"{mine}.") for mine in own if mine not in ("back", "lenses"))
+        if not key.startswith(unused)
+        and not any(f"{above}.{key}.".startswith(f"{mine}.") for mine in own if mine not in ("back", "lenses"))
     }
 
 
@@ -29,8 +36,18 @@ def told(reasons: dict[str, str]) -> str:
     keys: dict[str, list[str]] = {}
     for key, reason in reasons.items():
         keys.setdefault(reason, []).append(key)
-    lines = [f"  {', '.join(below)}: {reason}" for reason, below in keys.items()]
+    lines = [f"  {', '.join(_shared(below))}: {reason}" for reason, below in keys.items()]
     return "\n".join(["estimates, which no source gives:", *lines]) if lines else ""
+
+
+def _shared(keys: list[str]) -> list[str]:
+    """Give keys that differ in the number of the lens alone as one."""
+    lenses: dict[str, list[str]] = {}
+    for key in keys:
+        number, _, below = key.removeprefix(EACH).partition(".")
+        numbers = lenses.setdefault(f"{EACH}@.{below}" if key.startswith(EACH) else key, [])
+        numbers.append(number)
+    return [key.replace("@", ",".join(numbers), 1) for key, numbers in lenses.items()]
 
 
 def refuse_stray_estimates(config: Config) -> None:
