@@ -24,6 +24,7 @@ import pytest
 from multilens.app.command import run_command
 from multilens.app.compose import config_folder
 from multilens.app.schema import Config, LensConfig, ShapeConfig
+from multilens.app.schema_cues import SensorConfig
 
 ROOT = Path(__file__).parents[1]
 PAGES = [ROOT / name for name in ("README.md", "CONTRIBUTING.md", "CHANGELOG.md")] + sorted(ROOT.glob("docs/*.md"))
@@ -210,6 +211,7 @@ def is_told(kind: Any) -> bool:
         ("Keys", list(schema_keys(Config))),
         ("Keys of a shape", [field.name for field in fields(ShapeConfig)]),
         ("Keys of a lens", [field.name for field in fields(LensConfig)]),
+        ("Keys of a sensor", [field.name for field in fields(SensorConfig)]),
     ],
 )
 def test_the_tables_of_keys_are_the_schema(heading: str, keys: list[str]):

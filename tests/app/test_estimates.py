@@ -5,6 +5,7 @@ import pytest
 from multilens.app.estimates import estimates, refuse_stray_estimates, told
 from multilens.app.refusal import RefusedError
 from multilens.app.schema import BackConfig, Config, LensConfig, LensesConfig
+from multilens.app.schema_cues import CueName, CuesConfig
 
 
 def marked() -> Config:
@@ -22,6 +23,13 @@ def test_marks_are_found_by_their_whole_keys():
 def test_what_the_user_sets_is_no_estimate_of_ours():
     assert list(estimates(marked(), ["lenses.places"])) == ["back.outline.corner", "lenses.each.0.clearance"]
     assert "back.outline.corner" not in estimates(marked(), ["back.outline"])
+
+
+@pytest.mark.parametrize(("cue", "count"), [("stereo", 0), ("photometric_stereo", 1)])
+def test_a_sensor_is_told_only_where_its_numbers_are_read(cue: str, count: int):
+    lens = LensConfig(1.0, estimates={"sensor.full_well": "guessed"})
+    config = Config(lenses=LensesConfig(count=2, lens=lens), cues=CuesConfig([CueName[cue]]))
+    assert len(estimates(config)) == count
 
 
 def test_a_preset_that_is_chosen_keeps_its_marks():

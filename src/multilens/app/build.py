@@ -1,4 +1,4 @@
-"""From a configuration to the question it asks. Only `build_problem` needs torch."""
+"""From a configuration to the question it asks. Only `build_problem` and `build_question` need torch."""
 
 import re
 from collections.abc import Callable, Sequence
@@ -11,7 +11,9 @@ from omegaconf import DictConfig, OmegaConf, open_dict
 
 from multilens.app.cues import build_cues, check_cues
 from multilens.app.estimates import refuse_stray_estimates
+from multilens.app.photometry import build_scene, build_sensor, refuse_unknown_sensors
 from multilens.app.refusal import RefusedError, one_line, refused_at
+from multilens.app.robust import build_robust, check_robust
 from multilens.app.schema import (
     BackConfig,
     Config,
@@ -30,6 +32,7 @@ from multilens.lens import Lens
 
 if TYPE_CHECKING:
     from multilens.problem import Problem
+    from multilens.question import Question
 
 MOST_LENSES = 64
 MOST_KEEP_OUTS = 64
@@ -77,6 +80,9 @@ def check(config: Config) -> None:
     _refuse_unless_count("depth.count", config.depth.count, 2, MOST_DEPTHS)
     build_field(config.field_of_view)
     check_cues(config.cues)
+    build_scene(config.scene)
+    refuse_unknown_sensors(config.cues, config.lenses)
+    check_robust(config.robust)
     _refuse_unless_count("search.starts", config.search.starts, 1, MOST_STARTS)
     _refuse_unless_count("search.patience", config.search.patience, 0, MOST_STARTS)
     _refuse_unless_count("search.proof", config.search.proof, 0, MOST_BOXES)
@@ -146,8 +152,17 @@ def build_problem(config: Config) -> "Problem":
     with refused_at("depth"):
         range_of_depths = depths[config.depth.spacing](config.depth.near, config.depth.far, config.depth.count)
     with refused_at("cues"):
-        field, cues = build_field(config.field_of_view), build_cues(config.cues)
+        field, cues = build_field(config.field_of_view), build_cues(config.cues, build_scene(config.scene))
         return Problem(back, lenses, range_of_depths, cues=cues, gap=config.lenses.gap, field=field)
+
+
+def build_question(config: Config) -> "Question":
+    """Make the problem, and ask it of many devices where something sets them apart from the one that is drawn.
+
+    Raises:
+        RefusedError: something is out of its range or does not go together.
+    """
+    return build_robust(config.robust, build_problem(config))
 
 
 def _placed(lenses: tuple[Lens, ...], places: list[Any] | None) -> tuple[Lens, ...]:
@@ -177,6 +192,7 @@ def _build_lens(key: str, config: LensConfig) -> Lens:
         "position": None if config.position is None else _pair(f"{key}.position", config.position),
         "field_of_view_deg": config.field_of_view_deg,
         "near_focus": config.near_focus,
+        "sensor": build_sensor(f"{key}.sensor", config.sensor),
     }
     if (config.aperture_radius is None) == (config.f_number is None):
         given = "neither" if config.f_number is None else "both"

@@ -3,13 +3,15 @@
 from math import isfinite
 from typing import TYPE_CHECKING
 
-from multilens.app.refusal import RefusedError
-from multilens.app.schema import CueName, CuesConfig, PairLimitsConfig
+from multilens.app.refusal import RefusedError, refused_at
+from multilens.app.schema_cues import CueName, CuesConfig, PairLimitsConfig, RelativeErrorsConfig, TwoImagesConfig
+from multilens.ranges import refuse_unless_not_negative, refuse_unless_positive, refuse_unless_share
+from multilens.scene import Scene
 
 if TYPE_CHECKING:
     from multilens.cues import Cue
 
-LIMITED = (CueName["limited_stereo"],)
+LIMITED = (CueName["limited_stereo"], CueName["photometric_stereo"])
 """The cues that ask when a pair may be used."""
 
 
@@ -32,16 +34,54 @@ def check_cues(config: CuesConfig) -> None:
     if limits != PairLimitsConfig() and not set(LIMITED) & set(config.names):
         words, given = (", ".join(cue.name for cue in names) for names in (LIMITED, config.names))
         raise RefusedError(f"cues.limits are for {words}, got cues.names of {given}, which have none")
+    if CueName["photometric_defocus"] in config.names:
+        _check_two_images(config.two_images)
+    if CueName["printed_defocus"] in config.names:
+        _check_relative_errors(config.relative_errors)
 
 
-def build_cues(config: CuesConfig) -> "list[Cue]":
+def build_cues(config: CuesConfig, scene: Scene) -> "list[Cue]":
     """Make the cues in the order in which they are named."""
-    from multilens.cues import LensDefocus, LimitedStereo, PairLimits, PairStereo
+    from multilens.cues import (
+        LensDefocus,
+        LimitedStereo,
+        PairLimits,
+        PairStereo,
+        PhotometricDefocus,
+        PhotometricStereo,
+        PrintedDefocus,
+    )
 
     limits = PairLimits(config.limits.max_disparity, config.limits.least_overlap)
-    cues = {
-        CueName["stereo"]: PairStereo(),
-        CueName["defocus"]: LensDefocus(),
-        CueName["limited_stereo"]: LimitedStereo(limits),
+    images, errors = config.two_images, config.relative_errors
+    change, part = images.power_change_dioptres or 0.0, errors.change or 0.0
+    make = {
+        CueName["stereo"]: PairStereo,
+        CueName["defocus"]: LensDefocus,
+        CueName["limited_stereo"]: lambda: LimitedStereo(limits),
+        CueName["photometric_stereo"]: lambda: PhotometricStereo(scene, limits),
+        CueName["photometric_defocus"]: lambda: PhotometricDefocus(
+            scene, change, images.light_share, images.frequency_error
+        ),
+        CueName["printed_defocus"]: lambda: PrintedDefocus(errors.frequency, errors.amplitude, part),
     }
-    return [cues[name] for name in config.names]
+    return [make[name]() for name in config.names]
+
+
+def _check_two_images(config: TwoImagesConfig) -> None:
+    change = config.power_change_dioptres
+    if change is None:
+        raise RefusedError("cues.two_images.power_change_dioptres must be set for photometric_defocus, got null")
+    with refused_at("cues.two_images"):
+        refuse_unless_positive("power_change_dioptres", change)
+        refuse_unless_share("light_share", config.light_share)
+        refuse_unless_not_negative("frequency_error", config.frequency_error)
+
+
+def _check_relative_errors(config: RelativeErrorsConfig) -> None:
+    if config.change is None:
+        raise RefusedError("cues.relative_errors.change must be set for printed_defocus, got null")
+    with refused_at("cues.relative_errors"):
+        refuse_unless_not_negative("frequency", config.frequency)
+        refuse_unless_not_negative("amplitude", config.amplitude)
+        refuse_unless_positive("change", config.change)

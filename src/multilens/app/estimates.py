@@ -12,13 +12,11 @@ EACH = "lenses.each."
 
 
 def estimates(config: Config, given: Iterable[str] = ()) -> dict[str, str]:
-    """Give the reason of every number that is an estimate, by its whole key.
+    """Give the reason of every number that is an estimate, by its whole key; of sensors only where a photometric cue reads them.
 
     Args:
         config: what is asked.
         given: keys that the command line sets: whatever stood there before, it is the user's own now.
-
-    Of sensors only where a photometric cue reads them.
     """
     own = {key.lstrip("+~") for key in given}
     unused = () if PHOTOMETRIC & set(config.cues.names) else ("sensor",)

@@ -10,14 +10,13 @@ from typing import Any
 from hydra.core.config_store import ConfigStore
 from omegaconf import MISSING
 
+from multilens.app.schema_cues import CuesConfig, SceneConfig, SensorConfig
+
 SCHEMA = "multilens_schema"
 """Name under which `conf/config.yaml` asks for the schema."""
 
 ShapeKind = Enum("ShapeKind", ["rectangle", "rounded_rectangle", "disc", "polygon"])
 """The kinds of outline that a configuration can name."""
-
-CueName = Enum("CueName", ["stereo", "defocus", "limited_stereo"])
-"""The cues that a configuration can name."""
 
 PenaltyName = Enum("PenaltyName", ["distance", "area"])
 """The penalties that a configuration can name."""
@@ -96,6 +95,7 @@ class LensConfig:
         position: x and y, mm, null for a free lens, null in place of one of them for a lens that slides.
         field_of_view_deg: angle of the whole cone that the lens sees; null where unknown.
         near_focus: nearest depth that the lens brings into focus, mm; null where unknown.
+        sensor: what stands behind it; null where unknown.
         name: what the lens is called, such as tele.
         estimates: which of these numbers no source gives, by their keys, and what each rests on.
     """
@@ -111,6 +111,7 @@ class LensConfig:
     position: list[float | None] | None = None
     field_of_view_deg: float | None = None
     near_focus: float | None = None
+    sensor: SensorConfig | None = None
     name: str | None = None
     estimates: dict[str, str] = field(default_factory=dict)
 
@@ -155,32 +156,6 @@ class DepthConfig:
 
 
 @dataclass
-class PairLimitsConfig:
-    """When two lenses may measure depth together, beside what the lenses themselves cannot do.
-
-    Args:
-        max_disparity: largest shift that a matcher finds, mm on the sensor of the longer lens; null for any.
-        least_overlap: part of the narrower field of view that both lenses must see.
-    """
-
-    max_disparity: float | None = None
-    least_overlap: float = 0.0
-
-
-@dataclass
-class CuesConfig:
-    """Ways to measure depth.
-
-    Args:
-        names: at least one.
-        limits: of the pairs of limited_stereo.
-    """
-
-    names: list[CueName] = MISSING
-    limits: PairLimitsConfig = field(default_factory=PairLimitsConfig)
-
-
-@dataclass
 class FieldOfViewConfig:
     """How far from straight ahead depth is to be measured.
 
@@ -191,6 +166,44 @@ class FieldOfViewConfig:
 
     whole_deg: float | None = None
     rings: int = 8
+
+
+@dataclass
+class DriftConfig:
+    """What moves after the calibration, each number a standard deviation; `multilens.cues.drift.Drift` tells more.
+
+    Args:
+        shift: of a camera, lens and sensor together, mm.
+        decentre_um: of a lens over its own sensor, um.
+        focus_dioptre: of one over the in-focus depth, dioptres.
+    """
+
+    shift: float = 0.0
+    decentre_um: float = 0.0
+    focus_dioptre: float = 0.0
+
+
+@dataclass
+class RobustConfig:
+    """What sets devices apart from the one that is drawn; nothing, for a design of that one.
+
+    Args:
+        shift: of each lens as it is built, along x and along y, mm, standard deviation.
+        focus_dioptre: of one over each in-focus depth as it is built, dioptres, standard deviation.
+        covered: probability that a finger covers one lens.
+        drift: what moves after the calibration.
+        level: how much of the better outcomes is left out, from 0 (mean) to 1 (worst case).
+        samples: how many devices are drawn.
+        seed: of the devices.
+    """
+
+    shift: float = 0.0
+    focus_dioptre: float = 0.0
+    covered: float = 0.0
+    drift: DriftConfig = field(default_factory=DriftConfig)
+    level: float = 0.0
+    samples: int = 64
+    seed: int = 0
 
 
 @dataclass
@@ -234,6 +247,8 @@ class Config:
         depth: where depth is to be measured.
         field_of_view: how far from straight ahead.
         cues: ways to measure it.
+        scene: what the photometric ones look at.
+        robust: what sets devices apart from the one that is drawn.
         penalty: for room that is not there.
         search: how long and how widely.
     """
@@ -244,6 +259,8 @@ class Config:
     depth: DepthConfig = field(default_factory=DepthConfig)
     field_of_view: FieldOfViewConfig = field(default_factory=FieldOfViewConfig)
     cues: CuesConfig = field(default_factory=CuesConfig)
+    scene: SceneConfig = field(default_factory=SceneConfig)
+    robust: RobustConfig = field(default_factory=RobustConfig)
     penalty: PenaltyConfig = field(default_factory=PenaltyConfig)
     search: SearchConfig = field(default_factory=SearchConfig)
 
