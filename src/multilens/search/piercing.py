@@ -1,4 +1,4 @@
-"""The foci of equal apertures with the least worst error, by intervals pierced: where a search for the worst case had better begin."""
+"""The foci of equal apertures with the least worst error, by intervals pierced: where a search for the worst case begins."""
 
 import torch
 from jaxtyping import Bool, Float

@@ -78,18 +78,18 @@ def _polished(alone: Alone, x: Float[Tensor, " d"], deadline: float, tolerance: 
 
     question, size = alone.question, alone.question.back.size
     first, _ = alone.terms(x.numpy())
-    # Of a squared error the logarithm is minimised: the tolerance is then a part of it. A score of one's own may be negative.
-    one = question.metric is not None and first.max() > 0
+    # A score of one's own may be negative.
+    squared = question.metric is not None and first.max() > 0
     scale = max(float(np.abs(first).max()), float(np.finfo(float).tiny))
 
     def terms(vector: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         if monotonic() > deadline:
             raise OutOfTimeError
         values, gradient = alone.terms(vector)
-        if one:
-            values = np.maximum(values, LEAST_SCORE * scale)
-            return GENTLE * np.log(values / scale), GENTLE * gradient / values[:, None]
-        return GENTLE * values / scale, GENTLE * gradient / scale
+        values, gradient = values / scale, gradient / scale
+        if squared:
+            values, gradient = _flattened(np.maximum(values, LEAST_SCORE), gradient)
+        return GENTLE * values, GENTLE * gradient
 
     def room(vector: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         values, gradient = alone.room(vector)
@@ -112,6 +112,17 @@ def _polished(alone: Alone, x: Float[Tensor, " d"], deadline: float, tolerance: 
     if not np.isfinite(result.x).all():
         return x
     return torch.from_numpy(result.x[: len(x)]).clamp(min=0).minimum(alone.variables.upper)
+
+
+def _flattened(values: np.ndarray, gradient: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Give the logarithm of one squared error, so that a tolerance is a part of it; of many the roots.
+
+    A root is nearly linear in a focus, and steep nowhere, also at depths that are nearly in focus.
+    """
+    if len(values) == 1:
+        return np.log(values), gradient / values[:, None]
+    root = np.sqrt(values)
+    return root, gradient / (2 * root[:, None])
 
 
 def _as_one_objective(

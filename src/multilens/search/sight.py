@@ -19,8 +19,8 @@ LEAST_SCORE = 1e-300
 """mm^2; below it the logarithm of a score is not taken."""
 
 SOFTNESS = 0.5
-"""Width of the soft maximum of the logarithms of several squared errors. Of errors at many depths the largest is one after the other,
-and a narrow one would see one at a time; the polish makes it exact."""
+"""Width of the soft maximum of the logarithms of several squared errors. Of many depths now one is the worst, now another, and a
+narrow maximum would see but one of them at a time; the polish makes it exact."""
 
 
 @dataclass(frozen=True)
