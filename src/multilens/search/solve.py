@@ -24,6 +24,7 @@ from multilens.search.parting import part
 from multilens.search.polish import OutOfTimeError, polish
 from multilens.search.pool import Candidate, Elite
 from multilens.search.progress import Listener, Progress
+from multilens.search.rough import at_few_depths
 from multilens.search.sight import Seer
 from multilens.search.starts import scattered_starts, tried_places
 from multilens.search.threads import one_thread
@@ -163,10 +164,11 @@ class _Search:
         self.began = monotonic()
         self.exact = Variables(question)
         self.limits = Limits(question)
-        self.seer = Seer(question, variables)
+        self.rough = at_few_depths(question)
+        self.seer = Seer(self.rough, variables)
         self.price = penalty(question)
         self.generator = torch.Generator().manual_seed(seed)
-        self.foci = Foci(question, variables, self.generator)
+        self.foci = Foci(self.rough, variables, self.generator)
         self.elite = Elite(MOST_ELITE)
         self.incumbent: Candidate | None = None
         self.best_value = inf
@@ -263,7 +265,7 @@ class _Search:
         if self._late():
             return
         try:
-            x = polish(self.question, self.exact, self.exact.vector(layout), self.end, ROUGH)
+            x = polish(self.rough, self.exact, self.exact.vector(layout), self.end, ROUGH)
         except OutOfTimeError:
             self.out_of_time = True
             return
