@@ -24,6 +24,7 @@ from multilens.app.schema import (
     ShapeKind,
     Spacing,
 )
+from multilens.app.tolerance import build_tolerance
 from multilens.back import Back
 from multilens.field_of_view import Field
 from multilens.geometry import shape
@@ -83,6 +84,7 @@ def check(config: Config) -> None:
     build_scene(config.scene)
     refuse_unknown_sensors(config.cues, config.lenses)
     check_robust(config.robust)
+    build_tolerance(config.tolerance)
     _refuse_unless_count("search.starts", config.search.starts, 1, MOST_STARTS)
     _refuse_unless_count("search.patience", config.search.patience, 0, MOST_STARTS)
     _refuse_unless_count("search.proof", config.search.proof, 0, MOST_BOXES)

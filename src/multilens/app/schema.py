@@ -207,6 +207,19 @@ class RobustConfig:
 
 
 @dataclass
+class ToleranceConfig:
+    """How far off a measured depth may be; where both are given both are kept.
+
+    Args:
+        mm: at every depth; null for no such limit.
+        percent: of the depth; null for no such limit.
+    """
+
+    mm: float | None = None
+    percent: float | None = None
+
+
+@dataclass
 class PenaltyConfig:
     """What a start pays for room that is not there.
 
@@ -249,6 +262,7 @@ class Config:
         cues: ways to measure it.
         scene: what the photometric ones look at.
         robust: what sets devices apart from the one that is drawn.
+        tolerance: within which the design's working range is told.
         penalty: for room that is not there.
         search: how long and how widely.
     """
@@ -261,6 +275,7 @@ class Config:
     cues: CuesConfig = field(default_factory=CuesConfig)
     scene: SceneConfig = field(default_factory=SceneConfig)
     robust: RobustConfig = field(default_factory=RobustConfig)
+    tolerance: ToleranceConfig = field(default_factory=ToleranceConfig)
     penalty: PenaltyConfig = field(default_factory=PenaltyConfig)
     search: SearchConfig = field(default_factory=SearchConfig)
 
