@@ -33,7 +33,7 @@ def composed(*overrides: str) -> Config:
 def test_every_preset_composes_builds_and_scores(group: str, name: str):
     config = composed(f"{group}={name}")
     build.check(config)
-    problem = build.build_problem(config)
+    problem = build.build_question(config)
     lenses = problem.lenses
     tiers = max(lens.tiers for lens in lenses)
     # Wherever they are, apart from each other: a score needs no room.

@@ -19,7 +19,7 @@ from multilens.lens import Lens
 from multilens.problem import Problem
 from multilens.runs import SweepRow, redraw, sweep_table, write_failure, write_run, write_sweep_table
 
-TEXTS = {"config.yaml", "design.json", "layout.csv", "run.log"}
+TEXTS = {"config.yaml", "design.json", "layout.csv", "run.log", "sensitivity.csv"}
 PICTURES = {f"{name}.{kind}" for name in ("layout", "overview") for kind in ("svg", "png")}
 
 

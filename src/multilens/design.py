@@ -27,6 +27,8 @@ from multilens.records import (
     read_origin,
     read_problem,
 )
+from multilens.robust import Robust, as_drawn
+from multilens.sensitivity import Sensitivity, sensitivity
 from multilens.storage import Origin, write_whole
 from multilens.tolerance import Tolerance
 from multilens.working_range import WorkingRange, working_range
@@ -37,6 +39,9 @@ SCHEMA, SCHEMA_VERSION = "multilens.design", 2
 
 ROUNDING = 1e-9
 """Part of a score by which a lower bound may lie above it, where both are as good as they can be."""
+
+OTHERS = 2**31 - 1
+"""Seed of the devices on which a design for many devices is tried once it is found: the last there is."""
 
 SAME = 1e-12
 """Largest relative difference between a stored score and the one that its layout has: a few roundings, no more."""
@@ -83,8 +88,8 @@ class Design:
 
         Of a score of one's own it is the root, NaN if that is negative.
         """
-        if isinstance(self.problem, Problem) and self.status != INFEASIBLE:
-            return sqrt(self.problem.mean_square(self.layout).item())
+        if isinstance(drawn := as_drawn(self.problem), Problem) and self.status != INFEASIBLE:
+            return sqrt(drawn.mean_square(self.layout).item())
         return sqrt(self.score) if self.score >= 0 else nan
 
     @property
@@ -96,9 +101,9 @@ class Design:
     @property
     def measured(self) -> float:
         """Share of the depths, by weight, at which anything measures, 1 unless cues may fail; NaN if infeasible or no Problem."""
-        if not isinstance(self.problem, Problem) or self.status == INFEASIBLE:
+        if not isinstance(drawn := as_drawn(self.problem), Problem) or self.status == INFEASIBLE:
             return nan
-        return self.problem.measured(self.layout).item()
+        return drawn.measured(self.layout).item()
 
     @property
     def gap(self) -> float:
@@ -139,9 +144,9 @@ class Design:
         Raises:
             ValueError: nothing was found to measure with, the question has no depths, or the span is out of its range.
         """
-        if not isinstance(self.problem, Problem) or self.status == INFEASIBLE:
+        if not isinstance(drawn := as_drawn(self.problem), Problem) or self.status == INFEASIBLE:
             raise ValueError("design must have a layout and depths to have a working range")
-        return working_range(self.problem, self.layout, tolerance, span)
+        return working_range(drawn, self.layout, tolerance, span)
 
     def save(self, path: str | Path) -> None:
         """Write the design to a JSON file, whole or not at all; the same design gives the same bytes.
@@ -175,6 +180,16 @@ class Design:
             return cls.from_json(read_text(Path(path)))
         except ValueError as error:
             raise ValueError(f"{path}: {error}") from None
+
+    def sensitivity(self) -> Sensitivity:
+        """Give what it costs that one lens is off its place, its aperture or its focus, or is covered.
+
+        Raises:
+            ValueError: the design is infeasible, or its score is one's own.
+        """
+        if not isinstance(drawn := as_drawn(self.problem), Problem) or self.status == INFEASIBLE:
+            raise ValueError("design must have a layout and depths to have a sensitivity")
+        return sensitivity(drawn, self.layout)
 
     def plot(self) -> Any:
         """Draw the back, the errors and who wins at which depth on one sheet.
@@ -282,6 +297,13 @@ class Design:
             facts["score"] = f"{self.score:.6g}"
         else:
             facts[metric.name] = f"{self.figure:.6g} {metric.unit}"
+        if isinstance(self.problem, Robust):
+            if self.problem.disturbance.varies:
+                others = self.problem.afresh(OTHERS)
+                facts["of other devices"] = (
+                    f"{others.metric.figure(others.score(self.layout).item()):.6g} {others.metric.unit}"
+                )
+            facts["RMSE as drawn"] = f"{self.rmse:.6g} mm"
         if isinstance(self.problem, Problem):
             facts["RMSE"] = f"{self.rmse:.6g} mm"
             if self.measured < 1:

@@ -110,7 +110,7 @@ class Robust:
     problem: Problem
     disturbance: Disturbance
     level: float = 0.0
-    samples: int = 32
+    samples: int = 64
     seed: int = 0
 
     def __post_init__(self) -> None:
@@ -118,6 +118,8 @@ class Robust:
             raise ValueError(f"level must be from 0 to 1, got {self.level:g}")
         if self.samples < 2 or self.samples % 2:
             raise ValueError(f"samples must be an even number >= 2, got {self.samples}")
+        if not 0 <= self.seed < 2**31:
+            raise ValueError(f"seed must be from 0 to 2147483647, got {self.seed}")
         # A lens that nothing can do without is told of now, not in the middle of a search.
         _ = self.uses
 

@@ -3,6 +3,7 @@
     config.yaml      what was asked, as it was resolved
     design.json      the design, which alone is enough for everything else
     layout.csv       a row for each lens
+    sensitivity.csv  what it costs that one of them is off, where depths were asked for
     *.svg, *.png     its pictures
     run.log          what the run said
     overrides.json   what set this job of a sweep apart from the others, where it was one
@@ -29,6 +30,7 @@ from multilens.fields import items, record, text
 from multilens.storage import folder_written_whole, scratch_folder, write_whole
 
 CONFIG, DESIGN, LAYOUT, LOG = "config.yaml", "design.json", "layout.csv", "run.log"
+SENSITIVITY = "sensitivity.csv"
 OVERRIDES, FAILURE = "overrides.json", "failure.json"
 UNFINISHED, UNREADABLE = "unfinished", "unreadable"
 
@@ -88,6 +90,7 @@ def write_run(folder: Path, design: Design, config_text: str, log_text: str, ove
     with folder_written_whole(folder) as inside:
         (inside / DESIGN).write_text(design_text, encoding="utf-8", newline="\n")
         (inside / LAYOUT).write_text(layout_csv(design), encoding="utf-8", newline="\n")
+        (inside / SENSITIVITY).write_text(csv_text(design.sensitivity().cells()), encoding="utf-8", newline="\n")
         _write_common(inside, config_text, log_text, overrides)
         _draw(design, inside)
 
@@ -218,8 +221,18 @@ def _row(folder: Path) -> SweepRow:
             baseline = None if longest is None else longest[0]
             gap = None if isnan(design.gap) else design.gap
             metric = design.problem.metric
-            quoted = (None, design.figure, None) if metric is None else (metric.name, design.figure, metric.unit)
-            found = design.layout.count, *quoted, design.score, design.rmse, design.measured, gap, baseline
+            name, unit = (None, None) if metric is None else (metric.name, metric.unit)
+            found = (
+                design.layout.count,
+                name,
+                design.figure,
+                unit,
+                design.score,
+                design.rmse,
+                design.measured,
+                gap,
+                baseline,
+            )
             return SweepRow(job, overrides, design.status, "", *found)
         if (folder / FAILURE).exists():
             failure = record(_json(folder / FAILURE), FAILURE, ("status", "reason"))

@@ -25,6 +25,9 @@ SMALL = 1e-4
 KINK = 0.02
 """Part of a slope by which the gradient may miss it before the table says so."""
 
+ROUNDING = 1e-10
+"""Part of the figure below which a growth is none."""
+
 FLAT = 1e-6
 """Part of the figure below which a slope, for the whole step, is none."""
 
@@ -117,13 +120,13 @@ class Sensitivity:
         ]
         width = [max(map(len, column)) for column in zip(head, *rows, strict=True)]
         table = ["  ".join(map(str.rjust, row, width)).rstrip() for row in (head, *rows)]
-        told = (
-            f"by how much the {self.name}, {self.figure:.6g} {self.unit}, grows when one lens is off, and the error of the depth "
-            f"where a camera (0.1 mm)\nor a lens over its sensor (1 um) has moved and nobody knows, all in {self.unit}"
-        )
+        told = [
+            f"if one lens is off: growth of the {self.name}, {self.figure:.6g} {self.unit}, in {self.unit};",
+            f"unknown to the calibration: a camera aside by 0.1 mm, a lens over its sensor by 1 um, error made, in {self.unit}",
+        ]
         kinks = any(change.kink for row in self.lenses for change in (row.shift, row.aperture, row.focus))
         note = ["* the error has a corner here: its gradient does not tell this"] if kinks else []
-        return "\n".join([told, "", *table, *note])
+        return "\n".join([*told, *table, *note])
 
 
 def sensitivity(problem: Problem, layout: Layout) -> Sensitivity:
@@ -190,7 +193,12 @@ def _change(
             return problem.metric.figure(problem.score(step(layout, lens, size)).max().item()) - figure
 
     one_sided = growth(SMALL) / SMALL
-    return Change(max(growth(1.0), 0.0), slope, abs(one_sided - slope) > KINK * slope + FLAT * figure / SMALL**0.5)
+    worst = growth(1.0)
+    return Change(
+        worst if worst > ROUNDING * figure else 0.0,
+        slope,
+        abs(one_sided - slope) > KINK * slope + FLAT * figure / SMALL**0.5,
+    )
 
 
 def _shifted(layout: Layout, lens: int, size: float) -> Layout:

@@ -123,7 +123,7 @@ def test_what_cannot_be_evaluated_is_refused_in_one_line(
 
 def test_a_stored_layout_keeps_its_hardware(saved: Path, capsys: pytest.CaptureFixture[str]):
     assert run_command(["evaluate", str(saved), "back=disc"]) == 2
-    assert "another depth, field_of_view, cues, got back" in capsys.readouterr().err
+    assert "another depth, field_of_view, cues, robust, got back" in capsys.readouterr().err
 
 
 def test_a_used_folder_is_refused(saved: Path, capsys: pytest.CaptureFixture[str]):

@@ -149,7 +149,7 @@ def test_whoever_waits_is_told_of_every_trial():
 def test_an_answer_in_words():
     answer = fewest_lenses(eyes(2), ml.Tolerance(percent=0.4), search=QUICK)
     assert str(answer).splitlines() == [
-        "least lenses for an error of at most 0.4 % of the depth at every depth",
+        "least lenses for error <= 0.4 % of the depth at every depth",
         "",
         "lenses  largest error / tolerance  none can be below  verdict",
         "1       1.875                      1.875              not enough: proved",

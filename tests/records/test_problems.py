@@ -18,7 +18,9 @@ from multilens.cues import (
     PhotometricStereo,
     PrintedDefocus,
 )
+from multilens.cues.drift import Drift
 from multilens.depths import log_depths
+from multilens.disturbance import Disturbance
 from multilens.field_of_view import Field
 from multilens.fusion import InverseVariance
 from multilens.geometry.shape import disc
@@ -26,6 +28,7 @@ from multilens.lens import Lens
 from multilens.metrics import METRICS
 from multilens.problem import Problem
 from multilens.records import lens_record, problem_record, read_lens, read_problem
+from multilens.robust import Robust
 from multilens.scene import Scene
 from multilens.score_problem import ScoreProblem
 from multilens.sensor import Sensor
@@ -249,3 +252,36 @@ def test_a_small_file_cannot_ask_for_all_memory(whole, spoil):
     spoil(whole)
     with pytest.raises(ValueError, match=r"^problem must have at most 1e\+07 pairs and tiers times depths, got "):
         read_problem(whole, "problem")
+
+
+ROBUST = Robust(
+    Problem(Back.disc(10), [Lens(6.0, (0.5, 2.0))] * 2, [500.0, 900.0]),
+    Disturbance(0.1, 0.02, 0.3, Drift(0.01, 0.1, 0.002)),
+    level=0.9,
+    samples=4,
+    seed=7,
+)
+
+
+def test_a_question_of_many_devices_comes_back_with_the_same_devices():
+    back = read_problem(through_json(problem_record(ROBUST)), "problem")
+    assert isinstance(back, Robust)
+    assert (back.disturbance, back.level, back.samples, back.seed) == (ROBUST.disturbance, 0.9, 4, 7)
+    assert back.devices.shift.tolist() == ROBUST.devices.shift.tolist()
+    assert problem_record(back) == problem_record(ROBUST)
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "message"),
+    [
+        ("samples", 10**9, "problem.robust.samples must be from 2 to 4096, got 1000000000"),
+        ("samples", 3, "problem.robust: samples must be an even number >= 2, got 3"),
+        ("level", 2.0, "problem.robust: level must be from 0 to 1, got 2"),
+        ("disturbance", {"shift": 0.1}, "problem.robust.disturbance .*focus_dioptre"),
+    ],
+)
+def test_devices_that_make_no_sense_are_refused_with_their_key(key: str, value: object, message: str):
+    changed = through_json(problem_record(ROBUST))
+    changed["robust"][key] = value
+    with pytest.raises(ValueError, match=message):
+        read_problem(changed, "problem")

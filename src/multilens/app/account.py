@@ -6,7 +6,9 @@ from multilens.app.sweep import aligned
 from multilens.bands import winner_bands
 from multilens.design import Design
 from multilens.problem import Problem
+from multilens.robust import as_drawn
 from multilens.search.evaluate import refocused, widened
+from multilens.sensitivity import sensitivity
 
 DEPTHS = 5
 """Depths told one by one, from the nearest to the farthest by equal steps of the problem's own."""
@@ -23,7 +25,8 @@ def account(design: Design, chosen: bool) -> str:
         chosen: whether apertures and foci were chosen by the evaluation, rather than stored with the layout.
     """
     parts = [str(design), _chosen(design) if chosen else "", _broken(design), _errors(design), _bands(design)]
-    return "\n\n".join(filter(None, parts))
+    told = sensitivity(_problem(design), design.layout)
+    return "\n\n".join(filter(None, [*parts, str(told)]))
 
 
 def _chosen(design: Design) -> str:
@@ -88,5 +91,6 @@ def _some(lines: list[str]) -> list[str]:
 
 
 def _problem(design: Design) -> Problem:
-    assert isinstance(design.problem, Problem)
-    return design.problem
+    drawn = as_drawn(design.problem)
+    assert isinstance(drawn, Problem)
+    return drawn

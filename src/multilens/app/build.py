@@ -22,8 +22,9 @@ from multilens.app.schema import (
     LensesConfig,
     ShapeConfig,
     ShapeKind,
-    Spacing,
 )
+from multilens.app.score import build_depths, build_fusion, build_metric, check_score
+from multilens.app.tolerance import build_tolerance
 from multilens.back import Back
 from multilens.field_of_view import Field
 from multilens.geometry import shape
@@ -82,7 +83,9 @@ def check(config: Config) -> None:
     check_cues(config.cues)
     build_scene(config.scene)
     refuse_unknown_sensors(config.cues, config.lenses)
+    check_score(config.metric, config.fusion, config.depth)
     check_robust(config.robust)
+    build_tolerance(config.tolerance)
     _refuse_unless_count("search.starts", config.search.starts, 1, MOST_STARTS)
     _refuse_unless_count("search.patience", config.search.patience, 0, MOST_STARTS)
     _refuse_unless_count("search.proof", config.search.proof, 0, MOST_BOXES)
@@ -144,16 +147,14 @@ def build_problem(config: Config) -> "Problem":
     Raises:
         RefusedError: something is out of its range or does not go together.
     """
-    from multilens.depths import linear_depths, log_depths
     from multilens.problem import Problem
 
-    depths = {Spacing["linear"]: linear_depths, Spacing["log"]: log_depths}
     back, lenses = build_back(config.back), build_lenses(config.lenses)
-    with refused_at("depth"):
-        range_of_depths = depths[config.depth.spacing](config.depth.near, config.depth.far, config.depth.count)
+    depths, weights = build_depths(config.depth)
+    score = {"metric": build_metric(config.metric), "fusion": build_fusion(config.fusion), "guess": config.fusion.guess}
     with refused_at("cues"):
         field, cues = build_field(config.field_of_view), build_cues(config.cues, build_scene(config.scene))
-        return Problem(back, lenses, range_of_depths, cues=cues, gap=config.lenses.gap, field=field)
+        return Problem(back, lenses, depths, weights, cues, config.lenses.gap, field=field, **score)
 
 
 def build_question(config: Config) -> "Question":

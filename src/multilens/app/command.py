@@ -32,6 +32,8 @@ def run_command(given: list[str]) -> int:
                 return DONE
             if given[:1] == ["evaluate"]:
                 return _evaluate(given[1:])
+            if given[:1] == ["least"]:
+                return _least(given[1:])
             return _plot(given[1:]) if given[:1] == ["plot"] else _design(given)
     except RefusedError as refusal:
         reason, code = refusal, BAD_INPUT
@@ -69,6 +71,12 @@ def _evaluate(given: list[str]) -> int:
     from multilens.app.evaluate import evaluate_command
 
     return evaluate_command(given)
+
+
+def _least(given: list[str]) -> int:
+    from multilens.app.least import least_command
+
+    return least_command(given)
 
 
 def _print_paths(paths: list[Path]) -> None:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from multilens.app import build
 from multilens.app.ending import DONE, signals_held
 from multilens.app.estimates import estimates, told
+from multilens.app.folder import refuse_used, write_folder
 from multilens.app.given import Given, read_given
 from multilens.app.refusal import RefusedError, one_line
 
@@ -15,9 +16,9 @@ if TYPE_CHECKING:
     from multilens.design import Design
     from multilens.problem import Problem
 
-QUESTION = {"depth": ("depths", "weights"), "field_of_view": ("field",), "cues": ("cues",)}
-"""Parts of a configuration under which a stored layout can be scored anew, and what they are of a problem; the rest is the
-hardware, which it has."""
+QUESTION = {"depth": ("depths", "weights"), "field_of_view": ("field",), "cues": ("cues",), "robust": ()}
+"""Parts of a configuration under which a stored layout can be scored anew, and what they are of a problem (of which
+devices may differ: then of none); the rest is the hardware, which it has."""
 
 OUT = "out"
 
@@ -46,7 +47,7 @@ def evaluate_command(words: Sequence[str]) -> int:
     """
     asked = _sorted_words(words)
     if asked.out is not None:
-        _refuse_used(asked.out)
+        refuse_used(asked.out)
     given = None if asked.path is not None and not asked.lines else read_given(asked.lines)
     with signals_held():
         import torch  # noqa: F401
@@ -62,7 +63,7 @@ def evaluate_command(words: Sequence[str]) -> int:
     said = "\n\n".join(filter(None, lines))
     print(said)
     if asked.out is not None:
-        _write(asked.out, design, text, " ".join(["multilens evaluate", *words]) + f"\n{said}\n")
+        write_folder(asked.out, design, text, " ".join(["multilens evaluate", *words]) + f"\n{said}\n")
     return DONE
 
 
@@ -88,11 +89,6 @@ def _design_file(path: Path) -> Path:
     return file
 
 
-def _refuse_used(folder: Path) -> None:
-    if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
-        raise RefusedError(f"out must be a new or empty folder, {folder} is a file or holds something already")
-
-
 def _of_configuration(given: Given) -> "Design":
     from multilens.search.evaluate import evaluate, unplaced
 
@@ -114,20 +110,26 @@ def _of_configuration(given: Given) -> "Design":
 def _of_file(path: Path, given: Given | None) -> "Design":
     from multilens.design import Design
     from multilens.problem import Problem
+    from multilens.robust import Robust
     from multilens.search.evaluate import as_given
 
     try:
         design = Design.load(path)
     except ValueError as error:
         raise RefusedError(f"evaluate: {one_line(str(error))}") from None
-    if given is None or not isinstance(design.problem, Problem):
+    problem = design.problem.problem if isinstance(design.problem, Robust) else design.problem
+    if given is None or not isinstance(problem, Problem):
         return design
-    return as_given(_asked_anew(design.problem, given), design.layout)
+    anew = _asked_anew(problem, given)
+    if any(_part(key) == "robust" for key in given.keys):
+        return as_given(build.build_robust(given.config.robust, anew), design.layout)
+    kept = replace(design.problem, problem=anew) if isinstance(design.problem, Robust) else anew
+    return as_given(kept, design.layout)
 
 
 def _asked_anew(problem: "Problem", given: Given) -> "Problem":
     """Give the problem of a stored layout with those parts of the question that the words name."""
-    parts = {key.lstrip("+~").split(".")[0] for key in given.keys}
+    parts = {_part(key) for key in given.keys}
     for part in sorted(parts - set(QUESTION)):
         raise RefusedError(f"{part}: a stored layout can be scored under another {', '.join(QUESTION)}, got {part}")
     anew = build.build_problem(given.config)
@@ -137,10 +139,5 @@ def _asked_anew(problem: "Problem", given: Given) -> "Problem":
     return replace(problem, lenses=[replace(lens, focus=focus) for lens, focus in pairs], **others)
 
 
-def _write(folder: Path, design: "Design", config_text: str, log_text: str) -> None:
-    from multilens.runs import write_run
-
-    folder.parent.mkdir(parents=True, exist_ok=True)
-    write_run(folder, design, config_text, log_text)
-    for path in sorted(folder.iterdir()):
-        print(path)
+def _part(key: str) -> str:
+    return key.lstrip("+~").split(".")[0]

@@ -14,14 +14,10 @@ from omegaconf import DictConfig, OmegaConf
 
 from multilens.app.ending import BAD_INPUT, NOTHING_FOUND, SYSTEM_FAILED, signals_held, tell
 from multilens.app.refusal import RefusedError, one_line
-from multilens.app.schema import PenaltyName
+from multilens.app.search import NothingFoundError, search
 
 if TYPE_CHECKING:
     from multilens.design import Design
-
-
-class NothingFoundError(Exception):
-    """The search ended without a design; the message is the reason."""
 
 
 def run_job(config: DictConfig) -> None:
@@ -69,9 +65,21 @@ def _run_alone(config: DictConfig, folder: Path, log: list[str]) -> None:
     except RefusedError as refusal:
         _leave(BAD_INPUT, refusal)
     print(design)
+    marks = _estimates(config)
+    if marks:
+        print(f"\n{marks}\n")
+        log.append(marks)
     write_run(folder, design, _text(config), _lines(log))
     for path in sorted(folder.iterdir()):
         print(_from_here(path))
+
+
+def _estimates(config: DictConfig) -> str:
+    from multilens.app import build
+    from multilens.app.estimates import estimates, told
+
+    given = [line.partition("=")[0] for line in HydraConfig.get().overrides.task]
+    return told(estimates(build.typed(config), given))
 
 
 def _run_sweep_job(config: DictConfig, folder: Path, overrides: list[str], log: list[str], visible: bool) -> None:
@@ -100,30 +108,12 @@ def _run_sweep_job(config: DictConfig, folder: Path, overrides: list[str], log: 
 def _search(config: DictConfig, log: list[str], visible: bool) -> "Design":
     from multilens.app import build
     from multilens.app.terminal import progress_bar
-    from multilens.penalty import area_penalty, distance_penalty
-    from multilens.search.solve import solve
 
-    penalties = {PenaltyName["distance"]: distance_penalty, PenaltyName["area"]: area_penalty}
     given = build.typed(config)
     build.check(given)
-    problem, asked, began = build.build_problem(given), given.search, monotonic()
+    problem, began = build.build_question(given), monotonic()
     with progress_bar(log, visible) as listener:
-        try:
-            design = solve(
-                problem,
-                starts=asked.starts,
-                seed=asked.seed,
-                time_limit=asked.time_limit,
-                patience=asked.patience,
-                proof=asked.proof,
-                penalty=penalties[given.penalty.name],
-                listener=listener,
-            )
-        except RuntimeError as error:
-            # Of its own accord solve raises this when no start stays healthy; any other is a fault and keeps its traceback.
-            if "stayed healthy" not in str(error):
-                raise
-            raise NothingFoundError(str(error)) from None
+        design = search(problem, given, listener)
     log += [f"searched for {monotonic() - began:.1f} s: {design.status}", str(design)]
     if not design.feasible:
         raise NothingFoundError(design.reason)

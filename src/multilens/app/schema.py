@@ -11,6 +11,7 @@ from hydra.core.config_store import ConfigStore
 from omegaconf import MISSING
 
 from multilens.app.schema_cues import CuesConfig, SceneConfig, SensorConfig
+from multilens.app.schema_score import FusionConfig, HistogramConfig, MetricConfig
 
 SCHEMA = "multilens_schema"
 """Name under which `conf/config.yaml` asks for the schema."""
@@ -147,12 +148,14 @@ class DepthConfig:
         far: mm.
         count: how many depths from near to far.
         spacing: linear or log.
+        histogram: how much the depths of each bin count; null where all count alike.
     """
 
     near: float = MISSING
     far: float = MISSING
     count: int = 512
     spacing: Spacing = Spacing["log"]
+    histogram: HistogramConfig | None = None
 
 
 @dataclass
@@ -207,6 +210,19 @@ class RobustConfig:
 
 
 @dataclass
+class ToleranceConfig:
+    """How far off a measured depth may be; where both are given both are kept.
+
+    Args:
+        mm: at every depth; null for no such limit.
+        percent: of the depth; null for no such limit.
+    """
+
+    mm: float | None = None
+    percent: float | None = None
+
+
+@dataclass
 class PenaltyConfig:
     """What a start pays for room that is not there.
 
@@ -248,7 +264,10 @@ class Config:
         field_of_view: how far from straight ahead.
         cues: ways to measure it.
         scene: what the photometric ones look at.
+        metric: which error of all depths counts.
+        fusion: what is made of several measurements of one depth.
         robust: what sets devices apart from the one that is drawn.
+        tolerance: within which the design's working range is told.
         penalty: for room that is not there.
         search: how long and how widely.
     """
@@ -260,7 +279,10 @@ class Config:
     field_of_view: FieldOfViewConfig = field(default_factory=FieldOfViewConfig)
     cues: CuesConfig = field(default_factory=CuesConfig)
     scene: SceneConfig = field(default_factory=SceneConfig)
+    metric: MetricConfig = field(default_factory=MetricConfig)
+    fusion: FusionConfig = field(default_factory=FusionConfig)
     robust: RobustConfig = field(default_factory=RobustConfig)
+    tolerance: ToleranceConfig = field(default_factory=ToleranceConfig)
     penalty: PenaltyConfig = field(default_factory=PenaltyConfig)
     search: SearchConfig = field(default_factory=SearchConfig)
 

@@ -119,15 +119,18 @@ class _Task:
         return trial
 
     def answer(self, trials: list[Trial]) -> Answer:
-        """Give what the trials come to; the design that is the answer gets the bound of its own problem."""
-        problem = self.resource.problem
+        """Give what the trials come to; the design that shows it gets the lower bound of its own problem."""
+        metric = self.resource.problem.metric
+        goal, head = f"{metric.name} <= {self.most:g} {metric.unit}", f"{metric.name} ({metric.unit})"
         if isinstance(self.goal, Tolerance):
-            goal, head = f"an error of at most {self.goal} at every depth", Excess.name
-        else:
-            metric = problem.metric
-            goal, head = f"{metric.name} of at most {self.goal:g} {metric.unit}", f"{metric.name} ({metric.unit})"
-        ascending = tuple(sorted(trials, key=lambda trial: trial.value))
-        return Answer(self.resource, goal, head, ascending)
+            goal, head = f"error <= {self.goal} at every depth", Excess.name
+        ascending = sorted(trials, key=lambda trial: trial.value)
+        answer = Answer(self.resource, goal, head, tuple(ascending))
+        if answer.best is None or answer.design is None:
+            return answer
+        bound = lower_bound(answer.design.problem, self.boxes, answer.design.score)
+        shown = replace(answer.best, design=replace(answer.design, bound=bound))
+        return replace(answer, trials=tuple(shown if trial is answer.best else trial for trial in ascending))
 
 
 def fewest_lenses(

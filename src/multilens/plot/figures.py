@@ -15,6 +15,7 @@ from multilens.plot.style import FONT_SIZE, TITLE_FONT_SIZE, WARNING, style
 from multilens.plot.units import depth_unit, significant
 from multilens.problem import Problem
 from multilens.question import Question
+from multilens.robust import as_drawn
 
 DOTS_PER_INCH = 200
 """Of the PNG files."""
@@ -37,6 +38,7 @@ def design_figures(problem: Question, layout: Layout, convergence: Convergence |
     Returns:
         "layout" always, "errors" for a problem with depths, "convergence" where there is one.
     """
+    asked, problem = problem, as_drawn(problem)
     with style():
         figures = {"layout": _figure(problem, layout, SHEET)}
         draw_layout(_axes(figures["layout"], 0.15, 0.15, 8.7, 5.85), problem, layout)
@@ -45,7 +47,7 @@ def design_figures(problem: Question, layout: Layout, convergence: Convergence |
             _draw_errors_and_winners(figures["errors"], problem, layout, 0.95, 7.75)
         if convergence is not None:
             figures["convergence"] = _figure(problem, layout, SHEET)
-            score = problem.score(layout).item()
+            score = asked.score(layout).item()
             draw_convergence(_axes(figures["convergence"], 0.95, 0.75, 7.75, 4.85), convergence, score, problem.metric)
     return figures
 
@@ -57,6 +59,7 @@ def overview_figure(problem: Question, layout: Layout) -> Figure:
         problem: what is asked; one without depths has the back alone.
         layout: one layout, not a batch.
     """
+    problem = as_drawn(problem)
     with style():
         figure = _figure(problem, layout, WIDE)
         if isinstance(problem, Problem):

@@ -40,7 +40,7 @@ def problem_record(problem: Question) -> Record:
     """Give a problem, of one device or of many; cues, metric and fusion by their names in tables.
 
     Raises:
-        TypeError: it is neither a Problem nor a Robust one, or one of its cues is not in the table: code is never written to a file.
+        TypeError: its score is one's own, or one of its cues is not in the table: code is never written to a file.
     """
     if isinstance(problem, Robust):
         held = {field.name: getattr(problem, field.name) for field in fields(problem) if field.name != "problem"}

@@ -11,6 +11,7 @@ from multilens.geometry.shape import rectangle
 from multilens.layout import Layout
 from multilens.lens import Lens
 from multilens.problem import Problem
+from multilens.question import Question
 from multilens.search.solve import solve
 
 STARTS, PATIENCE = 32, 2
@@ -49,7 +50,7 @@ def evaluate(problem: Problem, seed: int = 0) -> Design:
     return as_given(problem, Layout(places, radii, foci))
 
 
-def as_given(problem: Problem, layout: Layout) -> Design:
+def as_given(problem: Question, layout: Layout) -> Design:
     """Give a layout that nobody searched for as a design, with its certificate."""
     certificate = certify(problem.back, problem.lenses, problem.focus_range, layout, problem.gap)
     return Design(problem, layout, GIVEN, "", certificate)
