@@ -24,7 +24,7 @@ LENSES = {"N >= 8": range(8, 100), "N = 4 to 6": range(4, 8), "N = 2, 3": range(
 WORST_GAP, TIE = 0.005, 1e-6
 """Parts of the best known score: the gap that is allowed at the limit, and what counts as equally good."""
 
-CONVEX_GAP, MEDIAN_GAP, EAGER_RATIO, VERTEX_GROWTH = 0.10, 0.20, 20.0, 0.10
+CONVEX_GAP, MEDIAN_GAP, EAGER_RATIO, VERTEX_GROWTH, MOST_TIMES = 0.10, 0.20, 20.0, 0.10, 3.0
 
 
 @dataclass(frozen=True)
@@ -54,6 +54,7 @@ class Results:
         bounds: by the names of the cases; empty where none were asked for.
         speed: rows of the table of evaluations, head first; empty likewise.
         growth: rows of the table of growth, head first; empty likewise.
+        cues: rows of the table of other cues, head first; empty likewise.
     """
 
     cases: Sequence[Case]
@@ -63,6 +64,7 @@ class Results:
     bounds: Mapping[str, Bound]
     speed: Sequence[Sequence[Any]]
     growth: Sequence[Sequence[Any]]
+    cues: Sequence[Sequence[Any]] = ()
 
     def of(self, case: str, method: str) -> list[Run]:
         """Give the runs of a method on a case that did not fail."""
@@ -149,7 +151,8 @@ def summary(results: Results) -> str:
         'A bound is a score below which no layout can come; "below" is how far it lies below the best known score.',
         "",
     ]
-    for title, rows in (("Value and gradient", results.speed), ("Growth", results.growth)):
+    tables = (("Value and gradient", results.speed), ("Growth", results.growth), ("Other cues", results.cues))
+    for title, rows in tables:
         if rows:
             page += [f"## {title}", "", markdown_text(rows)]
     return "\n".join(page)
@@ -234,6 +237,14 @@ def _speed_aims(results: Results) -> list[list[str]]:
                 f"time of a search step on {growth[-1][1]} vertices within {VERTEX_GROWTH:.0%} of that on {growth[0][1]}",
                 f"{times:.3g} times",
                 _verdict(times <= 1 + VERTEX_GROWTH),
+            ]
+        )
+    for name, _, times, *_ in results.cues[2:]:
+        rows.append(
+            [
+                f"search of four lenses by {name} cues at most {MOST_TIMES:g} times as long as by the thesis' cues",
+                f"{times:.3g} times",
+                _verdict(times <= MOST_TIMES),
             ]
         )
     return rows

@@ -13,6 +13,7 @@ from time import monotonic
 
 import multilens as ml
 from benchmark.best_known import Entry, improved, load, save
+from benchmark.cues import cues_table
 from benchmark.curves import curves
 from benchmark.growth import growth_table
 from benchmark.lanes import CORES, Lanes, Outcome, warm_lanes
@@ -55,8 +56,9 @@ def main() -> None:
             )
         save(known)
         bounds = {case.name: lanes.anywhere(0, _bound, case.name, known[case.name].score).result() for case in chosen}
-        speed, growth = (lanes.anywhere(0, made).result() for made in (speed_table, growth_table))
-    results = Results(chosen, runs, known, limit, bounds, speed, growth)
+        made = (speed_table, growth_table, *([cues_table] if whole else []))
+        tables = [lanes.anywhere(0, each).result() for each in made]
+    results = Results(chosen, runs, known, limit, bounds, *tables)
     folder = RESULTS if whole else QUICK_RESULTS
     write(results, folder)
     print(summary(results))

@@ -30,7 +30,12 @@ def made() -> Made:
         bounds = {CASE.name: Bound(bound, "for the test", 0.0)}
         speed = [["type", "device", "batch", "ratio"], ["float32", "cpu", 256, 25.0]]
         growth = [["grows", "to", "us"], ["outline vertices", 20, 2.0], ["outline vertices", 2000, 2.1]]
-        return Results([CASE], runs, best, 10.0, bounds, speed, growth)
+        cues = [
+            ["cues", "time", "times", "above", "worst"],
+            ["thesis", 8.0, 1.0, 0, 0],
+            ["photometric", 16.0, 2.0, 0, 0],
+        ]
+        return Results([CASE], runs, best, 10.0, bounds, speed, growth, cues)
 
     return results
 
@@ -79,3 +84,7 @@ def test_the_best_score_of_all_is_a_pass(made: Made, ours: float | None, verdict
 @pytest.mark.parametrize(("bound", "verdict"), [(0.85, "pass"), (0.7, "falls short"), (None, "falls short")])
 def test_the_certified_gap_is_held_against_its_aim(made: Made, bound: float | None, verdict: str) -> None:
     assert row(summary(made(0.5, 5.0, bound=bound)), "median over the problems").endswith(f"{verdict} |")
+
+
+def test_the_time_of_other_cues_is_held_against_its_aim(made: Made) -> None:
+    assert row(summary(made(0.5, 5.0)), "search of four lenses by photometric cues").endswith("| 2 times | pass |")
