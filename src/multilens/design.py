@@ -205,7 +205,7 @@ class Design:
         # Loaded only where something is drawn: it costs a second.
         from multilens.plot.figures import overview_figure
 
-        return overview_figure(self.problem, self.layout)
+        return overview_figure(self.problem, self.layout, self.tolerance)
 
     def to_json(self) -> str:
         """Give the text that `save` writes; raises what it raises, save for the OSError."""
