@@ -211,3 +211,16 @@ def test_a_design_tells_where_it_works():
     design = solve(problem, starts=2, patience=0, proof=0)
     (found,) = design.working_range(Tolerance(mm=10)).intervals
     assert found == pytest.approx((200, (10 * (30**2 + 2**2) ** 0.5 * 5 / 1e-3) ** 0.5), rel=1e-6)
+
+
+def test_the_working_range_is_printed_when_a_tolerance_is_asked_for(design):
+    assert "working range" not in str(design)
+    asked = replace(design, tolerance=Tolerance(mm=10, percent=1))
+    (line,) = (line for line in str(asked).splitlines() if line.startswith("working range"))
+    assert line.endswith(str(asked.working_range(asked.tolerance)))
+
+
+def test_a_tolerance_is_saved_and_read_back(design):
+    asked = replace(design, tolerance=Tolerance(mm=10, percent=1))
+    assert Design.from_json(asked.to_json()).tolerance == asked.tolerance
+    assert Design.from_json(design.to_json()).tolerance is None

@@ -1,14 +1,12 @@
 """The least of some values and its gradient against torch's own; the smooth maximum and the smooth step: bounds and gradients."""
 
-from math import exp
-
 import pytest
 import torch
 from hypothesis import given
 from hypothesis import strategies as st
 from torch.autograd import grad, gradcheck
 
-from multilens.numerics import least, smooth_step, soft_maximum, tangent_exp
+from multilens.numerics import least, smooth_step, soft_maximum
 
 # Few different values, so that ties are common.
 columns = st.lists(st.lists(st.integers(0, 3), min_size=4, max_size=4), min_size=1, max_size=6)
@@ -84,21 +82,3 @@ def test_the_step_has_no_corner():
 def test_the_step_passes_gradcheck():
     values = torch.linspace(-0.5, 1.5, 40, dtype=torch.float64).requires_grad_()
     assert gradcheck(smooth_step, [values])
-
-
-def test_an_exponential_is_itself_up_to_its_ceiling_and_its_tangent_beyond():
-    values = torch.tensor([-800.0, 0.0, 2.0, 3.0, 7.0], dtype=torch.float64)
-    expected = [0.0, 1.0, exp(2), exp(2) * 2, exp(2) * 6]
-    assert tangent_exp(values, 2.0).tolist() == pytest.approx(expected)
-
-
-def test_such_an_exponential_is_finite_in_single_precision():
-    values = torch.tensor([1e4, 1e9], requires_grad=True)
-    (slope,) = grad(tangent_exp(values, 16.0).sum(), values)
-    assert tangent_exp(values, 16.0).isfinite().all()
-    assert slope.isfinite().all()
-
-
-def test_such_an_exponential_passes_gradcheck():
-    values = torch.linspace(-3, 5, 40, dtype=torch.float64).requires_grad_()
-    assert gradcheck(lambda x: tangent_exp(x, 2.0), [values])

@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 from torch import Tensor
 from torch.autograd import grad, gradcheck
 
-from multilens import Back, Layout, Lens, LensDefocus, PairStereo, Problem, ScoreProblem, linear_depths, log_depths
+from multilens import Back, Layout, Lens, LensDefocus, PairStereo, Problem, linear_depths, log_depths
+from multilens.cues import LimitedStereo, PairLimits
 from multilens.optics.defocus import defocus_band
 
 BACK = Back.rectangle(70, 150)
@@ -309,33 +310,6 @@ def test_focus_range_is_the_lens_own_or_that_of_the_depths():
     assert problem.focus_range == ((200.0, 900.0), (100.0, 300.0))
 
 
-@pytest.mark.parametrize("spread", [linear_depths, log_depths])
-@pytest.mark.parametrize(("near", "far"), [(200.0, 5000.0), (0.1, 0.3), (33.3, 777.7)])
-def test_depths_begin_and_end_exactly_where_asked(spread, near, far):
-    depths = spread(near, far, 7)
-    assert (depths[0].item(), depths[-1].item(), len(depths)) == (near, far, 7)
-
-
-def test_linear_depths_are_a_step_apart():
-    steps = linear_depths(100, 500, 5).diff()
-    torch.testing.assert_close(steps, torch.full((4,), 100.0, dtype=torch.float64))
-
-
-def test_log_depths_are_a_factor_apart():
-    depths = log_depths(100, 1600, 5)
-    torch.testing.assert_close(depths[1:] / depths[:-1], torch.full((4,), 2.0, dtype=torch.float64))
-
-
-@pytest.mark.parametrize("spread", [linear_depths, log_depths])
-@pytest.mark.parametrize(
-    ("near", "far", "count", "name"),
-    [(0.0, 1.0, 8, "near"), (nan, 1.0, 8, "near"), (2.0, 1.0, 8, "far"), (1.0, inf, 8, "far"), (1.0, 2.0, 1, "count")],
-)
-def test_a_range_that_is_none_is_refused_by_name(spread, near, far, count, name):
-    with pytest.raises(ValueError, match=f"{name} must be"):
-        spread(near, far, count)
-
-
 @pytest.mark.parametrize(
     ("changed", "message"),
     [
@@ -351,6 +325,8 @@ def test_a_range_that_is_none_is_refused_by_name(spread, near, far, count, name)
         ({"cues": [PairStereo()]}, "cues must give"),
         ({"gap": -1.0}, "gap must be"),
         ({"gap": nan}, "gap must be"),
+        ({"guess": 0.0}, "guess must be"),
+        ({"guess": inf}, "guess must be"),
     ],
 )
 def test_what_is_no_problem_is_refused_by_name(changed, message):
@@ -371,19 +347,34 @@ def test_a_layout_of_too_few_foci_is_refused():
         Problem(BACK, [TIERED], [300.0]).score(layouts(0, lenses=1, tiers=1))
 
 
-# Any score
+# Cues that fail, and a guess
 
 
-def by_radius(layout: Layout) -> Tensor:
-    return -layout.aperture_radius
+FAILING = [LimitedStereo(PairLimits(max_disparity=0.3))]
+SLANT = Layout([[0.0, 0.0], [30.0, 40.0]], [1.0, 1.0], [500.0, 500.0])
 
 
-def test_of_several_terms_the_largest_is_the_score():
-    layout = layouts(0)
-    score = ScoreProblem(BACK, MIXED.lenses, by_radius).score(layout)
-    assert score.equal(-layout.aperture_radius.amin(-1))
+def test_the_guess_of_what_fails_is_the_spread_of_the_depths():
+    # Every depth is nearer than b f / d = 50 * 6 / 0.3 = 1000 mm.
+    problem = Problem(BACK, [WIDE] * 2, [300.0, 500.0, 700.0], [1.0, 2.0, 1.0], FAILING)
+    assert problem.score(SLANT).item() == pytest.approx((200**2 + 200**2) / 4)
 
 
-def test_a_score_of_one_number_is_one_term():
-    problem = ScoreProblem(BACK, MIXED.lenses, lambda layout: layout.position.sum((-1, -2)))
-    assert problem.terms(layouts(0)).shape == (3, 1)
+def test_a_single_depth_that_fails_is_wrong_by_itself():
+    assert Problem(BACK, [WIDE] * 2, [500.0], cues=FAILING).score(SLANT).item() == pytest.approx(500.0**2)
+
+
+def test_the_share_that_is_measured_is_by_weight():
+    problem = Problem(BACK, [WIDE] * 2, [500.0, 1500.0, 2000.0], [3.0, 2.0, 5.0], FAILING)
+    assert problem.measured(SLANT).item() == pytest.approx(0.7)
+
+
+@given(st.integers(0, 2**31))
+def test_what_is_minimised_is_never_less_than_what_is_claimed(seed):
+    problem = Problem(BACK, [WIDE] * 4, log_depths(200, 5000, 32), cues=[*FAILING, LensDefocus()])
+    layout = layouts(seed)
+    assert (problem.terms(layout).amax(-1) >= problem.score(layout) * (1 - 1e-12)).all()
+
+
+def test_no_guess_stands_in_for_cues_that_cannot_fail():
+    assert Problem(BACK, [WIDE] * 2, [500.0, 900.0]).prior_error is None

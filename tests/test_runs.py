@@ -49,8 +49,8 @@ def sketches(monkeypatch):
                 if module.error is not None:
                     raise module.error
 
-    module.design_figures = lambda problem, layout, convergence: {"layout": Figure()}
-    module.overview_figure = lambda problem, layout: Figure()
+    module.design_figures = lambda problem, layout, convergence, tolerance: {"layout": Figure()}
+    module.overview_figure = lambda problem, layout, tolerance: Figure()
     module.save_figures = save_figures
     monkeypatch.setitem(sys.modules, "multilens.plot.figures", module)
     return module

@@ -1,5 +1,6 @@
-"""Depths spread over a range."""
+"""Depths spread over a range, and how much each counts."""
 
+from collections.abc import Sequence
 from math import isfinite
 
 import torch
@@ -38,6 +39,32 @@ def log_depths(near: float, far: float, count: int = 512) -> Float[Tensor, " z"]
     # Rounding would put the ends beside what was asked for.
     depths[0], depths[-1] = near, far
     return depths
+
+
+def histogram_weights(
+    depths: Float[Tensor, " z"], edges: Sequence[float], shares: Sequence[float]
+) -> Float[Tensor, " z"]:
+    """Give weights by which the depths of each bin of a histogram count together as much as the bin does.
+
+    Args:
+        depths: mm.
+        edges: of the bins, ascending, mm; a depth at an edge belongs to the bin beyond it, the last to the last bin.
+        shares: of each bin, >= 0; one fewer than edges.
+
+    Returns:
+        Weights that sum to 1; within a bin all are alike.
+
+    Raises:
+        ValueError: a depth lies outside all bins, or a bin with a share has no depth.
+    """
+    bounds, share = (torch.tensor(numbers, dtype=torch.float64) for numbers in (edges, shares))
+    if not ((depths >= bounds[0]) & (depths <= bounds[-1])).all():
+        raise ValueError(f"edges must enclose all depths, got {edges[0]:g} to {edges[-1]:g} mm")
+    at = torch.searchsorted(bounds, depths.contiguous(), right=True).clamp(max=len(share)) - 1
+    count = torch.bincount(at, minlength=len(share))
+    if ((count == 0) & (share > 0)).any():
+        raise ValueError("every bin with a share must have a depth in it: more depths, or wider bins")
+    return (share / share.sum() / count)[at]
 
 
 def _refuse_unless_depth_range(near: float, far: float, count: int) -> None:

@@ -13,17 +13,20 @@ from multilens.documents import document, document_content, read_text
 from multilens.fields import choice, number, record, text, whole_number
 from multilens.geometry.pairs import pair_distance, pair_indices
 from multilens.layout import Layout
+from multilens.layout_table import f_numbers, foci, layout_lines
 from multilens.problem import Problem
 from multilens.question import Question
 from multilens.records import (
     certificate_record,
     convergence_record,
     layout_record,
+    noun_record,
     origin_record,
     problem_record,
     read_certificate,
     read_convergence,
     read_layout,
+    read_noun,
     read_origin,
     read_problem,
 )
@@ -36,6 +39,7 @@ from multilens.working_range import WorkingRange, working_range
 COMPLETE, OUT_OF_TIME, INFEASIBLE, GIVEN = "complete", "time limit", "infeasible", "as given"
 
 SCHEMA, SCHEMA_VERSION = "multilens.design", 2
+NUMBERS, PARTS = ("score", "figure", "rmse", "measured"), ("certificate", "origin", "convergence", "bound")
 
 ROUNDING = 1e-9
 """Part of a score by which a lower bound may lie above it, where both are as good as they can be."""
@@ -61,6 +65,7 @@ class Design:
         convergence: of the starts; None for a layout that was not searched for.
         origin: what made it; None for a layout that was not searched for.
         bound: below which no feasible layout of this problem scores, or why none is known; None where none was sought.
+        tolerance: within which its working range is told and drawn; None where nobody asked.
     """
 
     problem: Question
@@ -71,6 +76,7 @@ class Design:
     convergence: Convergence | None = None
     origin: Origin | None = None
     bound: Bound | None = None
+    tolerance: Tolerance | None = None
 
     @property
     def feasible(self) -> bool:
@@ -116,14 +122,12 @@ class Design:
     @property
     def f_numbers(self) -> tuple[float, ...]:
         """N = f / (2 A) of each lens."""
-        radii = self.layout.aperture_radius.tolist()
-        return tuple(lens.focal_length / (2 * radius) for lens, radius in zip(self.problem.lenses, radii, strict=True))
+        return f_numbers(self.layout, self.problem.lenses)
 
     @property
     def foci(self) -> tuple[tuple[float, ...], ...]:
         """In-focus depth of each tier that each lens has, mm."""
-        rows = zip(self.layout.focus.tolist(), self.problem.lenses, strict=True)
-        return tuple(tuple(foci[: lens.tiers]) for foci, lens in rows)
+        return foci(self.layout, self.problem.lenses)
 
     @property
     def longest_baseline(self) -> tuple[float, tuple[int, int]] | None:
@@ -135,7 +139,7 @@ class Design:
         return distance.max().item(), (first, second)
 
     def working_range(self, tolerance: Tolerance, span: tuple[float, float] | None = None) -> WorkingRange:
-        """Give the depths at which the error is within a tolerance: see `multilens.working_range`.
+        """Give the depths at which the error of the device, as it is drawn, is within a tolerance; see `multilens.working_range`.
 
         Args:
             tolerance: largest error.
@@ -144,9 +148,10 @@ class Design:
         Raises:
             ValueError: nothing was found to measure with, the question has no depths, or the span is out of its range.
         """
-        if not isinstance(drawn := as_drawn(self.problem), Problem) or self.status == INFEASIBLE:
+        problem = as_drawn(self.problem)
+        if not isinstance(problem, Problem) or self.status == INFEASIBLE:
             raise ValueError("design must have a layout and depths to have a working range")
-        return working_range(drawn, self.layout, tolerance, span)
+        return working_range(problem, self.layout, tolerance, span)
 
     def save(self, path: str | Path) -> None:
         """Write the design to a JSON file, whole or not at all; the same design gives the same bytes.
@@ -200,7 +205,7 @@ class Design:
         # Loaded only where something is drawn: it costs a second.
         from multilens.plot.figures import overview_figure
 
-        return overview_figure(self.problem, self.layout)
+        return overview_figure(self.problem, self.layout, self.tolerance)
 
     def to_json(self) -> str:
         """Give the text that `save` writes; raises what it raises, save for the OSError."""
@@ -220,6 +225,8 @@ class Design:
             "convergence": None if self.convergence is None else convergence_record(self.convergence),
             "bound": None if self.bound is None else _bound_record(self.bound),
         }
+        if self.tolerance is not None:
+            content["tolerance"] = noun_record(self.tolerance)
         written = document(SCHEMA, SCHEMA_VERSION, content)
         Design.from_json(written)
         return written
@@ -232,21 +239,8 @@ class Design:
             ValueError: as for `load`.
         """
         content = document_content(text, SCHEMA, SCHEMA_VERSION)
-        keys = (
-            "units",
-            "status",
-            "score",
-            "figure",
-            "rmse",
-            "measured",
-            "layout",
-            "problem",
-            "certificate",
-            "origin",
-            "convergence",
-            "bound",
-        )
-        fields = record(content, "design", keys)
+        keys = ("units", "status", *NUMBERS, "layout", "problem", *PARTS)
+        fields = record(content, "design", keys, optional=["tolerance"])
         status = choice(fields["status"], "status", (COMPLETE, OUT_OF_TIME, GIVEN))
         problem = read_problem(fields["problem"], "problem")
         if fields["units"] != (units := _units(problem)):
@@ -262,6 +256,7 @@ class Design:
             None if fields["convergence"] is None else read_convergence(fields["convergence"], "convergence"),
             None if fields["origin"] is None else read_origin(fields["origin"], "origin"),
             None if fields["bound"] is None else _read_bound(fields["bound"], "bound"),
+            read_noun(Tolerance, fields["tolerance"], "tolerance") if "tolerance" in fields else None,
         )
         _refuse_unless_it_holds(design, fields)
         return design
@@ -269,28 +264,7 @@ class Design:
     def __str__(self) -> str:
         if self.status == INFEASIBLE:
             return f"{self.status}: {self.reason}"
-        head = ("lens", "x (mm)", "y (mm)", "aperture radius (mm)", "f-number", "focus (mm)")
-        rows = [
-            (
-                str(i + 1),
-                f"{x:.3f}",
-                f"{y:.3f}",
-                f"{radius:.3f}",
-                f"{f_number:.2f}",
-                ", ".join(f"{z:.1f}" for z in foci),
-            )
-            for i, ((x, y), radius, f_number, foci) in enumerate(
-                zip(
-                    self.layout.position.tolist(),
-                    self.layout.aperture_radius.tolist(),
-                    self.f_numbers,
-                    self.foci,
-                    strict=True,
-                )
-            )
-        ]
-        width = [max(len(cell) for cell in column) for column in zip(head, *rows, strict=True)]
-        table = ["  ".join(map(str.rjust, row, width)).rstrip() for row in (head, *rows)]
+        table = layout_lines(self.layout, self.problem.lenses)
         facts = {"status": self.status}
         metric = self.problem.metric
         if metric is None:
@@ -310,6 +284,8 @@ class Design:
                 facts["measured"] = f"{100 * self.measured:.3g} % of the depths"
             if self.problem.field is not None:
                 facts["depths and field"] = coverage_in_words(self.problem, self.layout)
+        if self.tolerance is not None:
+            facts["working range"] = str(self.working_range(self.tolerance))
         if self.longest_baseline is not None:
             baseline, (first, second) = self.longest_baseline
             facts["longest baseline"] = f"{baseline:.3f} mm, lens {first + 1} to lens {second + 1}"
@@ -355,7 +331,7 @@ def _refuse_unless_it_holds(design: Design, fields: dict[str, Any]) -> None:
     if not design.certificate.feasible and design.status != GIVEN:
         tightest = design.certificate.tightest
         raise ValueError(f"layout must be feasible, got {tightest.what} lacking {-tightest.room:.4g} mm")
-    for name in ("score", "figure", "rmse", "measured"):
+    for name in NUMBERS:
         actual = getattr(design, name)
         stored = number(fields[name], name)
         if not isclose(stored, actual, rel_tol=SAME):

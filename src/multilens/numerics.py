@@ -1,4 +1,4 @@
-"""A minimum, a smooth maximum, a smooth step and an exponential that ends, and what their gradients do."""
+"""A minimum, a smooth maximum and a smooth step, and what their gradients do."""
 
 from typing import Any
 
@@ -53,32 +53,3 @@ def smooth_step(values: Float[Tensor, "..."]) -> Float[Tensor, "..."]:
     """
     within = values.clamp(0, 1)
     return within.square() * (3 - 2 * within)
-
-
-def tangent_exp(values: Float[Tensor, "..."], ceiling: float) -> Float[Tensor, "..."]:
-    """Give exp(x) up to a ceiling and its tangent from there on, exp(c) (1 + x - c): never infinite, differentiable once.
-
-    Its gradient is exp(min(x, c)): continuous, and nowhere 0 where the number is large.
-
-    Args:
-        values: x, of any size.
-        ceiling: c, from which on the tangent goes on, small enough that exp(c) can be held.
-
-    Returns:
-        Numbers > 0.
-    """
-    return _TangentExp.apply(values, ceiling)  # type: ignore[return-value]
-
-
-class _TangentExp(Function):
-    @staticmethod
-    def forward(ctx: Any, values: Tensor, ceiling: float) -> Tensor:
-        slope = values.clamp(max=ceiling).exp_()
-        ctx.save_for_backward(slope)
-        return slope * (values - ceiling).clamp_(min=0).add_(1)
-
-    @staticmethod
-    @once_differentiable
-    def backward(ctx: Any, grad: Tensor) -> tuple[Tensor, None]:  # type: ignore[override]
-        (slope,) = ctx.saved_tensors
-        return grad * slope, None

@@ -179,14 +179,15 @@ class Robust:
         """
         return replace(self, seed=seed, samples=self.samples if samples is None else samples)
 
-    def scores(self, layout: Layout) -> Float[Tensor, "*batch s u"]:
-        """Give the problem's score of every device in every use."""
+    def outcomes(self, layout: Layout) -> tuple[Float[Tensor, "*batch o"], Float[Tensor, " o"]]:
+        """Give the problem's score of every device in every use, and the probability of each."""
         with_devices = self.devices.built(layout)
-        return torch.stack([_score(use, with_devices) for use in self.uses], dim=-1)
+        scores = torch.stack([_score(use, with_devices) for use in self.uses], dim=-1)
+        return scores.flatten(-2), self._probability
 
     def score(self, layout: Layout) -> Float[Tensor, "*batch"]:
         """Give the mean of the worst outcomes, in the unit of the problem's score."""
-        return tail_mean(self.scores(layout).flatten(-2), self._probability, self.level)
+        return tail_mean(*self.outcomes(layout), self.level)
 
     def terms(self, layout: Layout) -> Float[Tensor, "*batch m"]:
         """Give what a search minimises the largest of: the score by smooth errors, or the few worst outcomes at level 1."""

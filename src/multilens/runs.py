@@ -207,8 +207,9 @@ def _draw(design: Design, folder: Path) -> None:
     # Loaded only where something is drawn: it costs a second.
     from multilens.plot.figures import design_figures, overview_figure, save_figures
 
-    figures = design_figures(design.problem, design.layout, design.convergence)
-    save_figures(figures | {"overview": overview_figure(design.problem, design.layout)}, folder)
+    figures = design_figures(design.problem, design.layout, design.convergence, design.tolerance)
+    overview = overview_figure(design.problem, design.layout, design.tolerance)
+    save_figures(figures | {"overview": overview}, folder)
 
 
 def _row(folder: Path) -> SweepRow:

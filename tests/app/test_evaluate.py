@@ -123,9 +123,21 @@ def test_what_cannot_be_evaluated_is_refused_in_one_line(
 
 def test_a_stored_layout_keeps_its_hardware(saved: Path, capsys: pytest.CaptureFixture[str]):
     assert run_command(["evaluate", str(saved), "back=disc"]) == 2
-    assert "another depth, field_of_view, cues, robust, got back" in capsys.readouterr().err
+    assert "a stored layout can be scored under another depth, field_of_view, cues" in capsys.readouterr().err
 
 
 def test_a_used_folder_is_refused(saved: Path, capsys: pytest.CaptureFixture[str]):
     assert run_command([*PAIR, PLACES, f"out={saved}"]) == 2
     assert "new or empty folder" in capsys.readouterr().err
+
+
+def test_a_saved_layout_can_be_asked_for_another_metric(saved: Path, capsys: pytest.CaptureFixture[str]):
+    anew = said(capsys, "evaluate", str(saved), "metric=relative")
+    fresh = said(capsys, *PAIR, PLACES, "metric=relative")
+    assert anew.split("\n\n")[1].splitlines()[1] == fresh.split("\n\n")[1].splitlines()[1]
+    assert "%" in anew.split("\n\n")[1].splitlines()[1]
+
+
+def test_a_scene_means_nothing_without_its_cues(saved: Path, capsys: pytest.CaptureFixture[str]):
+    assert run_command(["evaluate", str(saved), "scene=dim"]) == 2
+    assert "unless cues=... comes with it" in capsys.readouterr().err

@@ -121,3 +121,13 @@ def test_a_job_that_found_nothing_leaves_its_reason_and_no_design(swept: Path):
 def test_version(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]):
     assert run(monkeypatch, "--version") == 0
     assert capsys.readouterr().out.startswith("multilens 0.")
+
+
+def test_a_tolerance_is_told_and_kept_with_the_design(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("multilens.plot.figures.DOTS_PER_INCH", 20)
+    assert run(monkeypatch, *SMALL, "tolerance.percent=1", "hydra.run.dir=asked") == 0
+    assert "working range" in capsys.readouterr().out
+    assert json.loads((tmp_path / "asked" / "design.json").read_text())["tolerance"] == {"percent": 1.0}

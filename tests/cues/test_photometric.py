@@ -11,7 +11,7 @@ from torch import Tensor
 from torch.autograd import grad, gradcheck
 
 from multilens import Layout, Lens, PairLimits, PhotometricDefocus, PhotometricStereo, Scene, Sensor
-from multilens.cues import LimitedCue
+from multilens.cues import FusedCue, LimitedCue
 
 SENSOR = Sensor(pixel_pitch_um=1.22, full_well=6000, read_noise=2, efficiency=0.5)
 SCENE = Scene(contrast=0.3, cycles_per_mm=40, light_lux=300, exposure_ms=30, pixels=1024)
@@ -156,6 +156,27 @@ def test_variances_of_the_directions_make_the_pairs():
     torch.testing.assert_close(STEREO(layout, [LENS] * 3, z)[1], z**2 / 20 * (v[0] + v[2]).sqrt())
 
 
+def test_two_views_tell_together_what_the_pair_does():
+    z = depths(900.0, 1000.0, 3000.0)
+    told = STEREO.information(pair(), [LENS] * 2, z)
+    torch.testing.assert_close(told, STEREO(pair(), [LENS] * 2, z)[0] ** -2.0)
+
+
+def test_a_view_that_has_lost_the_texture_tells_nothing():
+    # At 1 m the third lens, focused at 150 mm, is out of it: two views are left.
+    three = Layout([[0.0, 0.0], [20.0, 0.0], [0.0, 90.0]], [1.9] * 3, [1000.0, 1000.0, 150.0])
+    z = depths(1000.0)
+    torch.testing.assert_close(STEREO.information(three, [LENS] * 3, z), STEREO.information(pair(), [LENS] * 2, z))
+
+
+def test_a_pair_beyond_its_limits_tells_nothing():
+    limited = PhotometricStereo(SCENE, PairLimits(max_disparity=0.2))
+    told = [
+        limited.information(pair(focus=700.0), [LENS] * 2, depths(500.0, 1000.0), smooth) for smooth in (False, True)
+    ]
+    assert all((one > 0).tolist() == [False, True] for one in told)
+
+
 def test_a_pair_beyond_its_limits_does_not_measure():
     # 20 mm * 6.86 mm / 500 mm is 0.27 mm on the sensor.
     limited = PhotometricStereo(SCENE, PairLimits(max_disparity=0.2))
@@ -264,6 +285,10 @@ def test_gradients(kind, place):
 @BOTH
 def test_they_are_cues_that_may_fail(cue):
     assert isinstance(cue, LimitedCue)
+
+
+def test_stereo_knows_what_many_views_tell():
+    assert isinstance(STEREO, FusedCue)
 
 
 @BOTH

@@ -14,7 +14,7 @@ from multilens.optics.texture import (
     FINEST,
     amplitude_error,
     blur_spread,
-    cutoff_share,
+    cutoff_radius,
     defocus_transfer,
     log_diffraction_transfer,
     pixel_transfer,
@@ -48,8 +48,8 @@ def test_diffraction_passes_what_two_shifted_apertures_share(share: float):
 
 def test_the_cutoff_of_diffraction_is_one_over_wavelength_and_f_number():
     # f/2 in green light: 1 / (0.000555 * 2) cycles per mm of sensor.
-    focal_length, radius = double(8.0, 2.0)
-    assert cutoff_share(focal_length / (0.000555 * 2), radius, 0.000555).item() == pytest.approx(1)
+    focal_length = torch.tensor(8.0, dtype=torch.float64)
+    assert cutoff_radius(focal_length / (0.000555 * 2), 0.000555).item() == pytest.approx(8 / (2 * 2))
 
 
 @pytest.mark.parametrize("dtype", [torch.float32, torch.float64])
@@ -128,7 +128,7 @@ def test_the_error_of_an_amplitude_is_that_of_a_least_squares_fit():
 def test_gradients():
     v, p, a, s, f, zf, z = (x.requires_grad_() for x in double(100.0, 0.0012, 1.5, 0.01, 6.0, 800.0, 500.0))
     assert gradcheck(pixel_transfer, (v, p), rtol=1e-4)
-    assert gradcheck(lambda *x: cutoff_share(*x, 0.000555), (v, a))
+    assert gradcheck(lambda x: cutoff_radius(x, 0.000555), v)
     share = torch.tensor([0.2, 0.7, 1.4], dtype=torch.float64, requires_grad=True)
     assert gradcheck(log_diffraction_transfer, (share,))
     assert gradcheck(blur_spread, (a, f, zf, z))

@@ -8,8 +8,11 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from multilens.bands import winner_bands
+from multilens.fusion import InverseVariance
 from multilens.layout import Layout
+from multilens.metrics import Relative
 from multilens.plot.errors import draw_errors, draw_winners
+from multilens.plot.figures import design_figures, overview_figure
 from multilens.plot.style import style
 from multilens.problem import Problem
 
@@ -103,6 +106,35 @@ def test_the_root_mean_square_is_drawn_and_written(cases):
     rmse = problem.score(layout).sqrt().item()
     assert any(np.allclose(line.get_ydata(), rmse) for line in ax.lines)
     assert f"RMSE {rmse:.2f} mm" in [text.get_text() for text in ax.get_legend().get_texts()]
+
+
+def test_measurements_together_are_a_line_below_the_best(cases):
+    problem, layout = cases["phone 4"]
+    together = Problem(problem.back, problem.lenses, problem.depths, fusion=InverseVariance())
+    ax = drawn(draw_errors, together, layout).axes[0]
+    (fused,) = (line for line in ax.lines if line.get_linewidth() == 1.4)
+    for line in (line for line in ax.lines if line.get_linewidth() == 3):
+        assert (np.interp(line.get_xdata(), *fused.get_data()) <= line.get_ydata() * (1 + 1e-3)).all()
+    words = [text.get_text() for text in drawn(draw_winners, together, layout).axes[0].texts]
+    assert any(word.startswith("measurement that tells most") for word in words)
+
+
+def test_the_root_mean_square_is_in_millimetres_whichever_metric_is_asked_for(cases):
+    problem, layout = cases["phone 4"]
+    relative = Problem(problem.back, problem.lenses, problem.depths, metric=Relative())
+    rmse = problem.score(layout).sqrt().item()
+    legend = drawn(draw_errors, relative, layout).axes[0].get_legend()
+    assert f"RMSE {rmse:.2f} mm" in [text.get_text() for text in legend.get_texts()]
+
+
+def test_the_legend_of_measurements_together_is_not_cut(cases):
+    problem, layout = cases["phone 4"]
+    together = Problem(problem.back, problem.lenses, problem.depths, fusion=InverseVariance())
+    for figure in (overview_figure(together, layout), design_figures(together, layout)["errors"]):
+        figure.draw_without_rendering()
+        legends = [ax.get_legend() for ax in figure.axes if ax.get_legend()]
+        assert legends
+        assert all(legend.get_window_extent().x1 < figure.bbox.x1 for legend in legends)
 
 
 def test_one_unit_of_depth_for_a_picture(cases):

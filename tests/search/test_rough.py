@@ -1,5 +1,7 @@
 """Questions at few depths: the same score up to the fineness of the depths, by the same lenses within the same bounds."""
 
+from dataclasses import replace
+
 import pytest
 import torch
 
@@ -8,7 +10,7 @@ from multilens.cues.limited import LimitedStereo
 from multilens.cues.limits import PairLimits
 from multilens.disturbance import Disturbance
 from multilens.robust import Robust
-from multilens.search.rough import FEW, at_few_depths
+from multilens.search.rough import FEW, FEW_DEVICES, at_few_depths
 
 EYE = Lens(6.0, (0.5, 3.0), disparity_noise=1e-3, blur_noise=1e-3)
 TWO = Layout([[10.0, 10.0], [60.0, 10.0]], [2.0, 1.0], [400.0, 900.0])
@@ -48,6 +50,15 @@ def test_of_a_question_asked_of_many_devices_each_is_asked_at_few_depths() -> No
     assert isinstance(few, Robust)
     assert len(few.problem.depths) == FEW
     assert few.score(TWO).item() == pytest.approx(robust.score(TWO).item(), rel=0.02)
+
+
+def test_of_many_devices_few_are_asked_where_each_costs_time() -> None:
+    robust = Robust(asked(log_depths(200, 5000, 96)), Disturbance(shift=0.05), samples=64)
+    few = at_few_depths(robust)
+    assert isinstance(few, Robust)
+    assert few.samples == FEW_DEVICES
+    thesis = replace(robust, problem=Problem(Back.disc(9), [EYE] * 2, [200.0] * 300))
+    assert at_few_depths(thesis) is thesis
 
 
 @pytest.mark.parametrize("problem", [asked(log_depths(200, 5000, FEW)), Problem(Back.disc(9), [EYE], [200.0] * 300)])

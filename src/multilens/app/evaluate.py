@@ -11,12 +11,22 @@ from multilens.app.estimates import estimates, told
 from multilens.app.folder import refuse_used, write_folder
 from multilens.app.given import Given, read_given
 from multilens.app.refusal import RefusedError, one_line
+from multilens.app.tolerance import build_tolerance
 
 if TYPE_CHECKING:
     from multilens.design import Design
     from multilens.problem import Problem
 
-QUESTION = {"depth": ("depths", "weights"), "field_of_view": ("field",), "cues": ("cues",), "robust": ()}
+QUESTION = {
+    "depth": ("depths", "weights"),
+    "field_of_view": ("field",),
+    "cues": ("cues",),
+    "scene": ("cues",),
+    "metric": ("metric",),
+    "fusion": ("fusion", "guess"),
+    "robust": (),
+    "tolerance": (),
+}
 """Parts of a configuration under which a stored layout can be scored anew, and what they are of a problem (of which
 devices may differ: then of none); the rest is the hardware, which it has."""
 
@@ -55,16 +65,23 @@ def evaluate_command(words: Sequence[str]) -> int:
 
     if asked.path is None:
         assert given is not None
-        design, text = _of_configuration(given), given.text
+        design, text = _within(_of_configuration(given), given), given.text
         lines = [account(design, chosen=True), told(estimates(given.config, given.keys))]
     else:
-        design, text = _of_file(asked.path, given), f"design: {asked.path}\noverrides: {list(asked.lines)}\n"
+        design = _within(_of_file(asked.path, given), given)
+        text = f"design: {asked.path}\noverrides: {list(asked.lines)}\n"
         lines = [account(design, chosen=False)]
     said = "\n\n".join(filter(None, lines))
     print(said)
     if asked.out is not None:
         write_folder(asked.out, design, text, " ".join(["multilens evaluate", *words]) + f"\n{said}\n")
     return DONE
+
+
+def _within(design: "Design", given: Given | None) -> "Design":
+    """Give a design whose working range is told where a tolerance is named."""
+    tolerance = None if given is None else build_tolerance(given.config.tolerance)
+    return design if tolerance is None else replace(design, tolerance=tolerance)
 
 
 def _sorted_words(words: Sequence[str]) -> _Asked:
@@ -132,6 +149,8 @@ def _asked_anew(problem: "Problem", given: Given) -> "Problem":
     parts = {_part(key) for key in given.keys}
     for part in sorted(parts - set(QUESTION)):
         raise RefusedError(f"{part}: a stored layout can be scored under another {', '.join(QUESTION)}, got {part}")
+    if "scene" in parts and "cues" not in parts:
+        raise RefusedError("scene: a stored layout keeps its cues and what they look at, unless cues=... comes with it")
     anew = build.build_problem(given.config)
     others = {name: getattr(anew, name) for part in parts for name in QUESTION[part]}
     # A lens that could focus where the depths were still could: its bounds are hardware.

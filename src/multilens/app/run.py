@@ -4,6 +4,7 @@ What costs time to load is loaded inside the functions: Hydra needs this module 
 """
 
 import traceback
+from dataclasses import replace
 from pathlib import Path
 from time import monotonic
 from typing import TYPE_CHECKING, NoReturn
@@ -15,6 +16,7 @@ from omegaconf import DictConfig, OmegaConf
 from multilens.app.ending import BAD_INPUT, NOTHING_FOUND, SYSTEM_FAILED, signals_held, tell
 from multilens.app.refusal import RefusedError, one_line
 from multilens.app.search import NothingFoundError, search
+from multilens.app.tolerance import build_tolerance
 
 if TYPE_CHECKING:
     from multilens.design import Design
@@ -113,7 +115,8 @@ def _search(config: DictConfig, log: list[str], visible: bool) -> "Design":
     build.check(given)
     problem, began = build.build_question(given), monotonic()
     with progress_bar(log, visible) as listener:
-        design = search(problem, given, listener)
+        found = search(problem, given, listener)
+    design = replace(found, tolerance=build_tolerance(given.tolerance))
     log += [f"searched for {monotonic() - began:.1f} s: {design.status}", str(design)]
     if not design.feasible:
         raise NothingFoundError(design.reason)

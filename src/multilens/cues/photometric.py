@@ -6,7 +6,7 @@ from functools import lru_cache
 from math import inf
 
 import torch
-from jaxtyping import Bool, Float
+from jaxtyping import Float
 from torch import Tensor
 from torch.nn.functional import one_hot
 
@@ -18,6 +18,7 @@ from multilens.cues.thesis import NANOMETRE, LensDefocus, PairStereo
 from multilens.geometry.pairs import pair_distance, pair_indices
 from multilens.layout import Layout
 from multilens.lens import Lens
+from multilens.optics.many_views import view_information
 from multilens.optics.photometric import defocus_error, direction_variance, stereo_error
 from multilens.ranges import refuse_unless_not_negative, refuse_unless_positive, refuse_unless_share
 from multilens.scene import Scene
@@ -53,50 +54,54 @@ class PhotometricStereo:
         self, layout: Layout, lenses: Sequence[Lens], depths: Float[Tensor, " z"]
     ) -> Float[Tensor, "*batch p z"]:
         """Give the depth error of every pair, mm, infinite where it does not measure."""
-        variance, seen = self._views(layout, lenses, depths)
+        variance = self.direction_variance(layout, lenses, depths)
         first, second = pair_indices(len(lenses), depths.device)
-        usable = seen[..., first, :] & seen[..., second, :] & self.limits.usable(layout, lenses, depths)
-        return self._errors(layout, variance, depths).masked_fill(~usable, inf)
+        errors = stereo_error(depths, _baseline(layout), variance[..., first, :] + variance[..., second, :])
+        return errors.masked_fill(~self.limits.usable(layout, lenses, depths), inf)
 
     def smooth(
         self, layout: Layout, lenses: Sequence[Lens], depths: Float[Tensor, " z"]
     ) -> Float[Tensor, "*batch p z"]:
         """Give the depth error of every pair, mm, finite also where the texture is lost, over the limits' smooth factor."""
-        variance, _ = self._views(layout, lenses, depths)
-        errors = self._errors(layout, variance, depths)
+        variance = self.direction_variance(layout, lenses, depths, smooth=True)
+        errors = stereo_error(depths, _baseline(layout), _sum_of_pairs(variance))
         if not self.limits.bind(lenses):
             return errors
         return errors / self.limits.factor(layout, lenses, depths).clamp(min=FLOOR)
 
+    def information(
+        self, layout: Layout, lenses: Sequence[Lens], depths: Float[Tensor, " z"], smooth: bool = False
+    ) -> Float[Tensor, "*batch z"]:
+        """Give what all lenses tell together as views of one point, 1/mm^2, of those pairs that may be used."""
+        precision = self.direction_variance(layout, lenses, depths, smooth).reciprocal()
+        baseline = _baseline(layout).squeeze(-1)
+        return view_information(baseline, precision, self._usable(layout, lenses, depths, smooth)) / depths**4
+
     def direction_variance(
-        self, layout: Layout, lenses: Sequence[Lens], depths: Float[Tensor, " z"]
+        self, layout: Layout, lenses: Sequence[Lens], depths: Float[Tensor, " z"], smooth: bool = False
     ) -> Float[Tensor, "*batch n z"]:
         """Give the variance of the direction in which each lens sees a point, rad^2, infinite where it has lost the texture.
 
-        With it the views of more than two lenses can be put together; a pair's error is Z^2 / b sqrt(v_i + v_j).
+        A pair's error is Z^2 / b sqrt(v_i + v_j).
+
+        Args:
+            layout: of these lenses.
+            lenses: what is known of each.
+            depths: Z, mm, > 0.
+            smooth: whether a search asks, that wants a differentiable and finite number; else what may be claimed.
         """
-        variance, seen = self._views(layout, lenses, depths)
-        return variance.masked_fill(~seen, inf)
+        sight = texture_sight(self.scene, 1.0, layout, lenses, depths, smooth)
+        reach = sight.frequency * (layout.aperture_radius.unsqueeze(-1) / 2)
+        return direction_variance(sight.error_squared(reach, _sharpest(layout.focus, depths)), sight.frequency)
 
-    def smooth_direction_variance(
-        self, layout: Layout, lenses: Sequence[Lens], depths: Float[Tensor, " z"]
-    ) -> Float[Tensor, "*batch n z"]:
-        """Give the same, finite also where a lens has lost the texture, rad^2."""
-        return self._views(layout, lenses, depths)[0]
-
-    def _views(
-        self, layout: Layout, lenses: Sequence[Lens], depths: Float[Tensor, " z"]
-    ) -> tuple[Float[Tensor, "*batch n z"], Bool[Tensor, "*batch n z"]]:
-        sight = texture_sight(self.scene, 1.0, layout, lenses, depths)
-        spread = layout.aperture_radius.unsqueeze(-1) / 2
-        log_error = sight.blurred(sight.frequency * spread * _sharpest(layout.focus, depths))
-        return direction_variance(sight.error_squared(log_error), sight.frequency), sight.seen(log_error)
-
-    def _errors(
-        self, layout: Layout, variance: Float[Tensor, "*batch n z"], depths: Float[Tensor, " z"]
-    ) -> Float[Tensor, "*batch p z"]:
-        baseline = pair_distance(layout.position).clamp(min=NANOMETRE).unsqueeze(-1)
-        return stereo_error(depths, baseline, _sum_of_pairs(variance))
+    def _usable(
+        self, layout: Layout, lenses: Sequence[Lens], depths: Float[Tensor, " z"], smooth: bool
+    ) -> Float[Tensor, "*batch p z"] | None:
+        if not self.limits.bind(lenses):
+            return None
+        if smooth:
+            return self.limits.factor(layout, lenses, depths).square()
+        return self.limits.usable(layout, lenses, depths).to(layout.position)
 
 
 @dataclass(frozen=True)
@@ -140,28 +145,28 @@ class PhotometricDefocus:
         self, layout: Layout, lenses: Sequence[Lens], depths: Float[Tensor, " z"]
     ) -> Float[Tensor, "*batch k z"]:
         """Give the depth error of every lens and tier, mm, infinite where it has lost the texture."""
-        errors, seen = self._images(layout, lenses, depths)
-        return errors.masked_fill(~seen, inf)
+        return self._errors(layout, lenses, depths, smooth=False)
 
     def smooth(
         self, layout: Layout, lenses: Sequence[Lens], depths: Float[Tensor, " z"]
     ) -> Float[Tensor, "*batch k z"]:
         """Give the depth error of every lens and tier, mm, finite also where the texture is lost."""
-        return self._images(layout, lenses, depths)[0]
+        return self._errors(layout, lenses, depths, smooth=True)
 
-    def _images(
-        self, layout: Layout, lenses: Sequence[Lens], depths: Float[Tensor, " z"]
-    ) -> tuple[Float[Tensor, "*batch k z"], Bool[Tensor, "*batch k z"]]:
-        sight, radius, focus = _tiers(
-            texture_sight(self.scene, self.light_share, layout, lenses, depths), layout, lenses
-        )
+    def _errors(
+        self, layout: Layout, lenses: Sequence[Lens], depths: Float[Tensor, " z"], smooth: bool
+    ) -> Float[Tensor, "*batch k z"]:
+        sight = texture_sight(self.scene, self.light_share, layout, lenses, depths, smooth)
+        sight, radius, focus = _tiers(sight, layout, lenses)
         change = self.power_change_dioptres * PER_DIOPTRE
-        reach = sight.frequency * radius.unsqueeze(-1) / 2
+        reach = sight.frequency * (radius.unsqueeze(-1) / 2)
         defocus = 1 / depths - 1 / focus.unsqueeze(-1)
-        nearer, farther = (sight.blurred(reach * (defocus + half)) for half in (change / 2, -change / 2))
-        error_squared = sight.error_squared(nearer) + sight.error_squared(farther)
-        errors = defocus_error(depths, defocus, reach**2, change, error_squared, self.frequency_error)
-        return errors, sight.seen(nearer) & sight.seen(farther)
+        first, second = (sight.error_squared(reach, defocus + half) for half in (change / 2, -change / 2))
+        return defocus_error(depths, defocus, reach**2, change, first + second, self.frequency_error)
+
+
+def _baseline(layout: Layout) -> Float[Tensor, "*batch p 1"]:
+    return pair_distance(layout.position).clamp(min=NANOMETRE).unsqueeze(-1)
 
 
 def _sharpest(focus: Float[Tensor, "*batch n t"], depths: Float[Tensor, " z"]) -> Float[Tensor, "*batch n z"]:

@@ -7,23 +7,19 @@ the square of itself to it, and nothing overflows however wide the blur.
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from math import log, pi
+from math import inf, log, pi
 from typing import NamedTuple
 
 import torch
 from jaxtyping import Bool, Float
 from torch import Tensor
 
+from multilens.cues.fading import CEILING, faded, fading_in_focus
 from multilens.layout import Layout
 from multilens.lens import Lens
-from multilens.numerics import tangent_exp
 from multilens.optics.photometry import exposed, photoelectrons, relative_noise_squared
-from multilens.optics.texture import FINEST, cutoff_share, log_diffraction_transfer, pixel_transfer
+from multilens.optics.texture import FINEST, cutoff_radius, log_diffraction_transfer, pixel_transfer
 from multilens.scene import Scene
-
-CEILING = 16.0
-"""Of y, in the smooth errors alone: there the error is 3000 times one at which the texture is lost, which is as good as none;
-beyond it r^2 grows in a straight line with y, a slope that a search can follow back."""
 
 
 @dataclass(frozen=True)
@@ -33,36 +29,39 @@ class Sight:
     Args:
         frequency: w, phase of the texture per angle of view; alike at all depths where it is that on the sensor, and for all
             lenses where it is that on the object.
-        log_error: y in focus; its gradient is the aperture's.
-        resolved: where neither pixels nor diffraction have wiped out the texture.
+        log_error: y in focus.
         largest: t^2.
+        smooth: whether a search asks: then every error is finite and differentiable, and more than what is claimed where the
+            texture is nearly lost. Else it is what may be claimed, infinite where the texture is lost.
     """
 
     frequency: Float[Tensor, "#n #z"]
     log_error: Float[Tensor, "*batch n #z"]
-    resolved: Bool[Tensor, "*batch n #z"]
     largest: float
+    smooth: bool
 
     def of(self, lenses: Tensor) -> "Sight":
         """Give a line for each of some lenses, which may be named more than once."""
         frequency = self.frequency if len(self.frequency) == 1 else self.frequency[lenses]
-        return Sight(frequency, self.log_error[..., lenses, :], self.resolved[..., lenses, :], self.largest)
+        return Sight(frequency, self.log_error[..., lenses, :], self.largest, self.smooth)
 
-    def blurred(self, blur: Float[Tensor, "*batch n z"]) -> Float[Tensor, "*batch n z"]:
-        """Give y after a blur of the phase w s rad, s its standard deviation: the amplitude falls by exp(-(w s)^2 / 2)."""
-        return self.log_error + blur.square()
+    def error_squared(
+        self, reach: Float[Tensor, "*batch n #z"], defocus: Float[Tensor, "*batch n z"]
+    ) -> Float[Tensor, "*batch n z"]:
+        """Give r^2 once the texture is blurred by the phase R u: its amplitude falls by exp(-(R u)^2 / 2).
 
-    def error_squared(self, log_error: Float[Tensor, "*batch n z"]) -> Float[Tensor, "*batch n z"]:
-        """Give r^2 of y: finite, and differentiable, for any y."""
-        return self.largest * tangent_exp(log_error, CEILING)
-
-    def seen(self, log_error: Float[Tensor, "*batch n z"]) -> Bool[Tensor, "*batch n z"]:
-        """Say where the texture stands out of the noise, and has detail that pixels and diffraction pass."""
-        return (log_error <= 0) & self.resolved
+        Args:
+            reach: R = w S with S the spread of the aperture, mm.
+            defocus: u = 1/Z - 1/Zf, 1/mm.
+        """
+        if self.smooth:
+            return self.largest * faded(self.log_error, reach, defocus)
+        log_error = self.log_error + (reach * defocus).square()
+        return self.largest * log_error.exp().where(log_error <= 0, inf)
 
 
 def texture_sight(
-    scene: Scene, light_share: float, layout: Layout, lenses: Sequence[Lens], depths: Float[Tensor, " z"]
+    scene: Scene, light_share: float, layout: Layout, lenses: Sequence[Lens], depths: Float[Tensor, " z"], smooth: bool
 ) -> Sight:
     """Give how every lens sees the texture in focus.
 
@@ -72,20 +71,25 @@ def texture_sight(
         layout: of these lenses.
         lenses: what is known of each; all have a sensor.
         depths: Z, mm, > 0.
+        smooth: whether a search asks; else it is what may be claimed.
 
     Reference:
         docs/photometric.md.
     """
     known = _known(scene, light_share, tuple(lenses), depths.dtype, depths.device)
-    radius = layout.aperture_radius
-    signal = exposed(known.light * radius**2, known.full_well, scene.contrast)
-    noise = relative_noise_squared(signal, known.read_noise).log().unsqueeze(-1)
-    frequency, log_contrast, passed = _in_pixels(scene, known, depths)
-    share = cutoff_share(frequency / (2 * pi), radius.unsqueeze(-1), scene.wavelength)
-    log_error = (
-        noise - 2 * (log_contrast + log_diffraction_transfer(share)) + log(2 * scene.least_snr**2 / scene.pixels)
-    )
-    return Sight(frequency, log_error, passed & (share <= FINEST), scene.least_snr**-2)
+    if scene.frequency_on == "object":
+        known = _in_pixels(scene, known, 2 * pi * scene.cycles_per_mm * depths.unsqueeze(0))
+    radius, largest = layout.aperture_radius.unsqueeze(-1), scene.least_snr**-2
+    if smooth:
+        # Where the pixels do not pass the texture no layout can help: the error begins at the ceiling.
+        rest = known.rest + CEILING * ~known.passed
+        light = (known.light, known.full_well, known.read_noise)
+        return Sight(known.frequency, fading_in_focus(radius, *light, known.narrowest, rest), largest, smooth)
+    share = known.narrowest / radius
+    signal = (known.light * radius.square()).minimum(known.full_well)
+    noise = relative_noise_squared(signal, known.read_noise)
+    log_error = noise.log() - 2 * log_diffraction_transfer(share) + known.rest
+    return Sight(known.frequency, log_error.where(known.passed & (share <= FINEST), inf), largest, smooth)
 
 
 def refuse_unless_sensors(lenses: Sequence[Lens]) -> None:
@@ -100,47 +104,50 @@ def refuse_unless_sensors(lenses: Sequence[Lens]) -> None:
 
 
 class _Known(NamedTuple):
-    """What no layout changes, a number for each lens."""
+    """What no layout changes, a row for each lens."""
 
-    light: Float[Tensor, " n"]
+    light: Float[Tensor, "n 1"]
     """Photoelectrons with an aperture radius of 1 mm."""
-    full_well: Float[Tensor, " n"]
-    read_noise: Float[Tensor, " n"]
+    full_well: Float[Tensor, "n 1"]
+    """Photoelectrons that the mean of the texture may reach."""
+    read_noise: Float[Tensor, "n 1"]
     pixel_pitch: Float[Tensor, "n 1"]
     focal_length: Float[Tensor, "n 1"]
+    frequency: Float[Tensor, "#n #z"]
+    """w, of the texture."""
+    narrowest: Float[Tensor, "#n #z"]
+    """Radius of the aperture that just no longer passes it, mm."""
+    passed: Bool[Tensor, "#n #z"]
+    """Where the pixels pass it."""
+    rest: Float[Tensor, "#n #z"]
+    """What contrast, pixels and pooling add to y."""
 
 
 @lru_cache(maxsize=64)
 def _known(
     scene: Scene, light_share: float, lenses: tuple[Lens, ...], dtype: torch.dtype, device: torch.device
 ) -> _Known:
-    sensors = [lens.sensor for lens in lenses if lens.sensor is not None]
-    rows = [[s.full_well, s.read_noise, s.efficiency, s.pixel_pitch] for s in sensors]
-    full_well, read_noise, efficiency, pitch = torch.tensor(rows, dtype=dtype, device=device).T
-    focal_length = torch.tensor([lens.focal_length for lens in lenses], dtype=dtype, device=device)
-    light = photoelectrons(
-        scene.light_lux,
-        scene.reflectance,
-        scene.exposure_ms,
-        efficiency * light_share,
-        pitch,
-        torch.ones_like(pitch),
-        focal_length,
-    )
-    return _Known(light, full_well, read_noise, pitch.unsqueeze(-1), focal_length.unsqueeze(-1))
+    numbers = [
+        (sensor.full_well, sensor.read_noise, sensor.efficiency * light_share, sensor.pixel_pitch, lens.focal_length)
+        for lens in lenses
+        if (sensor := lens.sensor) is not None
+    ]
+    columns = torch.tensor(numbers, dtype=dtype, device=device).T.unsqueeze(-1)
+    full_well, read_noise, efficiency, pitch, focal_length = columns.unbind(0)
+    exposure = (scene.light_lux, scene.reflectance, scene.exposure_ms)
+    light = photoelectrons(*exposure, efficiency, pitch, torch.ones_like(pitch), focal_length)
+    most = exposed(torch.full_like(full_well, inf), full_well, scene.contrast)
+    frequency = 2 * pi * scene.cycles_per_mm * focal_length
+    nothing = (frequency, frequency, frequency > 0, frequency)
+    return _in_pixels(scene, _Known(light, most, read_noise, pitch, focal_length, *nothing), frequency)
 
 
-def _in_pixels(
-    scene: Scene, known: _Known, depths: Float[Tensor, " z"]
-) -> tuple[Float[Tensor, "#n #z"], Float[Tensor, "#n #z"], Bool[Tensor, "#n #z"]]:
-    """Give w, the logarithm of the contrast behind the pixels, and where they pass the texture."""
-    if scene.frequency_on == "object":
-        frequency = 2 * pi * scene.cycles_per_mm * depths.unsqueeze(0)
-    else:
-        frequency = 2 * pi * scene.cycles_per_mm * known.focal_length
-    cycles = frequency / (2 * pi * known.focal_length)
-    nyquist = 1 / (2 * known.pixel_pitch)
-    transfer = pixel_transfer(cycles.minimum(nyquist), known.pixel_pitch)
-    passed = cycles <= nyquist
-    # Where the pixels do not pass it no layout can help: the smooth error begins at the ceiling.
-    return frequency, (scene.contrast * transfer).log() - CEILING / 2 * ~passed, passed
+def _in_pixels(scene: Scene, known: _Known, frequency: Float[Tensor, "#n #z"]) -> _Known:
+    """Fill in what follows from the phase of the texture per angle of view."""
+    cycles = frequency / (2 * pi)
+    on_sensor, nyquist = cycles / known.focal_length, 1 / (2 * known.pixel_pitch)
+    # Above the Nyquist frequency nothing is claimed; a zero of the transfer has no logarithm.
+    contrast = scene.contrast * pixel_transfer(on_sensor.minimum(nyquist), known.pixel_pitch)
+    rest = log(2 * scene.least_snr**2 / scene.pixels) - 2 * contrast.log()
+    narrowest = cutoff_radius(cycles, scene.wavelength)
+    return known._replace(frequency=frequency, narrowest=narrowest, passed=on_sensor <= nyquist, rest=rest)

@@ -111,8 +111,9 @@ class _Task:
         problem = self.resource.with_only(value)
         certificate = certify(problem.back, problem.lenses, problem.focus_range, design.layout, problem.gap)
         # Of a tolerance the history is in other units than the problem's score.
-        convergence = None if isinstance(self.goal, Tolerance) else design.convergence
-        return replace(design, problem=problem, certificate=certificate, convergence=convergence, bound=None)
+        tolerance = self.goal if isinstance(self.goal, Tolerance) else None
+        others = {"convergence": None, "tolerance": tolerance} if tolerance else {}
+        return replace(design, problem=problem, certificate=certificate, bound=None, **others)
 
     def _told(self, trial: Trial) -> Trial:
         self.listener(trial)

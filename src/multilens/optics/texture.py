@@ -14,8 +14,8 @@ FINEST = 0.95
 """Part of the cutoff of diffraction up to which a texture counts as seen; its transfer is 0.013 there."""
 
 _LEFT = acos(FINEST) - FINEST * sqrt(1 - FINEST**2)
-_FALL = 2 * sqrt(1 - FINEST**2) / _LEFT
-"""Slope of the logarithm of the transfer at FINEST, downward."""
+FALL = 2 * sqrt(1 - FINEST**2) / _LEFT
+"""Slope of the logarithm of the transfer from FINEST on, downward."""
 
 
 def pixel_transfer(frequency: Float[Tensor, "..."], pixel_pitch: Float[Tensor, "..."]) -> Float[Tensor, "..."]:
@@ -34,23 +34,20 @@ def pixel_transfer(frequency: Float[Tensor, "..."], pixel_pitch: Float[Tensor, "
     return torch.sinc(frequency * pixel_pitch)
 
 
-def cutoff_share(
-    cycles_per_radian: Float[Tensor, "..."], aperture_radius: Float[Tensor, "..."], wavelength: float
-) -> Float[Tensor, "..."]:
-    """Give a frequency over the one that a round aperture just no longer passes, x = v l / (2 A).
+def cutoff_radius(cycles_per_radian: Float[Tensor, "..."], wavelength: float) -> Float[Tensor, "..."]:
+    """Give the radius of the round aperture that just no longer passes a frequency, v l / 2.
 
     Args:
         cycles_per_radian: v, cycles per mm of sensor times mm from lens to sensor, >= 0.
-        aperture_radius: A, mm, > 0.
         wavelength: l, mm, > 0.
 
     Returns:
-        x; from 1 on nothing comes through.
+        Radius, mm. Over the radius of an aperture it is the share x of its cutoff at which the frequency lies.
 
     Reference:
-        J. W. Goodman, Introduction to Fourier Optics, section 6.3.
+        J. W. Goodman, Introduction to Fourier Optics, section 6.3: the cutoff is 2 A / l cycles per radian.
     """
-    return cycles_per_radian * wavelength / (2 * aperture_radius)
+    return cycles_per_radian * wavelength / 2
 
 
 def log_diffraction_transfer(share: Float[Tensor, "..."]) -> Float[Tensor, "..."]:
@@ -69,7 +66,7 @@ def log_diffraction_transfer(share: Float[Tensor, "..."]) -> Float[Tensor, "..."
     """
     seen = share.clamp(max=FINEST)
     transfer = 2 / pi * (seen.acos() - seen * (1 - seen**2).sqrt())
-    return transfer.log() - _FALL * (share - seen)
+    return transfer.log() - FALL * (share - seen)
 
 
 def blur_spread(

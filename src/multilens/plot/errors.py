@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from math import sqrt
 
 import numpy as np
+import torch
 from jaxtyping import Float
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
@@ -13,6 +14,7 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter, NullLoca
 
 from multilens.bands import NOTHING, Band, dense_depths, errors_at, winner_bands
 from multilens.cues import Measurement
+from multilens.fusion import Best
 from multilens.layout import Layout
 from multilens.plot.canvas import paper_size, text_size
 from multilens.plot.placing import spread
@@ -39,7 +41,8 @@ def draw_errors(ax: Axes, problem: Problem, layout: Layout) -> None:
     """Draw the error of every measurement against depth, thin, the least of them bold, and their root mean square.
 
     The bold line has the colour of the measurement that is best there. In focus a lens' error is 0, which a logarithmic axis
-    cannot show: the dips are cut at the lower edge. A measurement has no line where it fails.
+    cannot show: the dips are cut at the lower edge. A measurement has no line where it fails. Where not the best alone counts, the
+    error of all measurements together is a black line.
 
     Args:
         ax: drawn on; logarithmic where the depths span more than a factor 4.
@@ -50,7 +53,7 @@ def draw_errors(ax: Axes, problem: Problem, layout: Layout) -> None:
     errors = errors_at(problem, layout, depths).numpy()
     at, least = depths.numpy(), errors.min(axis=0)
     errors, least = (np.where(np.isfinite(curve), curve, np.nan) for curve in (errors, least))
-    rmse = sqrt(problem.score(layout).item())
+    rmse = sqrt(problem.mean_square(layout).item())
     logarithmic = _set_depth_axis(ax, problem)
     bottom, top = _error_limits(errors, least, rmse, logarithmic)
     if logarithmic:
@@ -71,6 +74,9 @@ def draw_errors(ax: Axes, problem: Problem, layout: Layout) -> None:
         x, y = np.r_[band.near, at[part], band.far], np.maximum(np.r_[ends[0], least[part], ends[1]], floor)
         look = {"color": measurement_colour(band.measurement), "solid_capstyle": "round", "zorder": 3}
         ax.plot(x, y, linewidth=3.0, marker="o" if len(at) == 1 else None, **look)
+    if _together(problem):
+        fused = problem.squared_error(layout.to(torch.float64), depths).detach().sqrt().numpy()
+        ax.plot(at, np.maximum(fused, floor), color=INK, linewidth=1.4, zorder=4)
     ax.axhline(rmse, color=INK, linewidth=1.0, linestyle=(0, (5, 3)), zorder=4)
     ax.set_ylabel("depth error (mm)")
     ax.set_xlabel(f"depth ({depth_unit(problem).name})")
@@ -108,7 +114,8 @@ def draw_winners(ax: Axes, problem: Problem, layout: Layout) -> None:
         ax.add_patch(Rectangle((near, strip.bar), far - near, BAR_HEIGHT, facecolor=colour, edgecolor="none"))
     unnamed, short = _name_bands(strip, bands)
     unit = depth_unit(problem)
-    caption = f"best measurement; it changes at the depths below ({unit.name})"
+    best = "measurement that tells most" if _together(problem) else "best measurement"
+    caption = f"{best}; it changes at the depths below ({unit.name})"
     depths = [bands[0].near, *(band.far for band in bands)] if bands[0].near < bands[-1].far else [bands[0].near]
     left_out = _write_depths(strip, depths, unit, caption + "; numbers are lenses" * short)
     if unnamed or left_out:
@@ -180,17 +187,27 @@ def _error_limits(
     return min(bottom, 0.3 * highest), 1.3 * min(largest or 1.0, 10 * highest)
 
 
+def _together(problem: Problem) -> bool:
+    """Whether more than the best measurement counts at a depth."""
+    return not isinstance(problem.fusion, Best) or problem.prior_error is not None
+
+
 def _draw_legend(ax: Axes, problem: Problem, rmse: float) -> None:
     first = {measurement.cue: measurement for measurement in reversed(problem.measurements)}
     handles = [
         Line2D([], [], color=measurement_colour(m), linewidth=0.9, label=cue) for cue, m in reversed(first.items())
     ]
     handles.append(Line2D([], [], color=FAINT, linewidth=3.0, label="best of all"))
+    if _together(problem):
+        handles.append(Line2D([], [], color=INK, linewidth=1.4, label="all together"))
     handles.append(
         Line2D([], [], color=INK, linewidth=1.0, linestyle=(0, (5, 3)), label=f"RMSE {significant(rmse)} mm")
     )
     place = {"loc": "lower left", "bbox_to_anchor": (0.0, 1.0), "ncols": len(handles), "borderaxespad": 0.3}
-    ax.legend(handles=handles, frameon=False, fontsize=SMALL_FONT_SIZE, columnspacing=1.4, handlelength=2.4, **place)
+    wide = (
+        {"columnspacing": 1.4, "handlelength": 2.4} if len(handles) < 5 else {"columnspacing": 0.9, "handlelength": 1.6}
+    )
+    ax.legend(handles=handles, frameon=False, fontsize=SMALL_FONT_SIZE, **wide, **place)
 
 
 def _name_bands(strip: _Strip, bands: Sequence[Band]) -> tuple[int, bool]:

@@ -12,10 +12,12 @@ from multilens.plot.back import draw_layout
 from multilens.plot.convergence import draw_convergence
 from multilens.plot.errors import draw_errors, draw_winners
 from multilens.plot.style import FONT_SIZE, TITLE_FONT_SIZE, WARNING, style
+from multilens.plot.tolerance import draw_tolerance
 from multilens.plot.units import depth_unit, significant
 from multilens.problem import Problem
 from multilens.question import Question
 from multilens.robust import as_drawn
+from multilens.tolerance import Tolerance
 
 DOTS_PER_INCH = 200
 """Of the PNG files."""
@@ -27,13 +29,16 @@ HEAD = 0.9
 """Inches at the top of a figure that its title takes."""
 
 
-def design_figures(problem: Question, layout: Layout, convergence: Convergence | None = None) -> dict[str, Figure]:
+def design_figures(
+    problem: Question, layout: Layout, convergence: Convergence | None = None, tolerance: Tolerance | None = None
+) -> dict[str, Figure]:
     """Draw each picture of a design by itself.
 
     Args:
         problem: what is asked.
         layout: one layout, not a batch.
         convergence: of the starts, or None where nothing was searched.
+        tolerance: that is marked on the errors, or None for none.
 
     Returns:
         "layout" always, "errors" for a problem with depths, "convergence" where there is one.
@@ -44,7 +49,7 @@ def design_figures(problem: Question, layout: Layout, convergence: Convergence |
         draw_layout(_axes(figures["layout"], 0.15, 0.15, 8.7, 5.85), problem, layout)
         if isinstance(problem, Problem):
             figures["errors"] = _figure(problem, layout, SHEET)
-            _draw_errors_and_winners(figures["errors"], problem, layout, 0.95, 7.75)
+            _draw_errors_and_winners(figures["errors"], problem, layout, tolerance, 0.95, 7.75)
         if convergence is not None:
             figures["convergence"] = _figure(problem, layout, SHEET)
             score = asked.score(layout).item()
@@ -52,19 +57,20 @@ def design_figures(problem: Question, layout: Layout, convergence: Convergence |
     return figures
 
 
-def overview_figure(problem: Question, layout: Layout) -> Figure:
+def overview_figure(problem: Question, layout: Layout, tolerance: Tolerance | None = None) -> Figure:
     """Draw a design on one slide: the back with its lenses, the errors, and who wins at which depth.
 
     Args:
         problem: what is asked; one without depths has the back alone.
         layout: one layout, not a batch.
+        tolerance: that is marked on the errors, or None for none.
     """
     problem = as_drawn(problem)
     with style():
         figure = _figure(problem, layout, WIDE)
         if isinstance(problem, Problem):
             draw_layout(_axes(figure, 0.15, 0.15, 6.35, 6.4), problem, layout)
-            _draw_errors_and_winners(figure, problem, layout, 7.35, 5.65)
+            _draw_errors_and_winners(figure, problem, layout, tolerance, 7.35, 5.65)
         else:
             draw_layout(_axes(figure, 0.15, 0.15, 13.0, 6.4), problem, layout)
     return figure
@@ -129,9 +135,14 @@ def _axes(figure: Figure, left: float, bottom: float, width: float, height: floa
     return figure.add_axes((left / across, bottom / up, width / across, height / up))
 
 
-def _draw_errors_and_winners(figure: Figure, problem: Problem, layout: Layout, left: float, width: float) -> None:
+def _draw_errors_and_winners(
+    figure: Figure, problem: Problem, layout: Layout, tolerance: Tolerance | None, left: float, width: float
+) -> None:
     """Draw errors above winners, their depths aligned, from the bottom of a figure to its title."""
     winners = 1.7
     height = figure.get_size_inches()[1] - HEAD - 0.35 - winners - 0.75
     draw_winners(_axes(figure, left, 0.1, width, winners), problem, layout)
-    draw_errors(_axes(figure, left, 0.1 + winners + 0.6, width, height), problem, layout)
+    errors = _axes(figure, left, 0.1 + winners + 0.6, width, height)
+    draw_errors(errors, problem, layout)
+    if tolerance is not None:
+        draw_tolerance(errors, problem, layout, tolerance)

@@ -9,7 +9,7 @@ from matplotlib.colors import to_hex, to_rgb
 
 from multilens.cues import Measurement
 
-INK, FAINT, RULE, PAPER, WARNING = "#1a1a1a", "#6b6b6b", "#c9c9c9", "#ffffff", "#b3261e"
+INK, FAINT, RULE, PAPER, WARNING, KEPT = "#1a1a1a", "#6b6b6b", "#c9c9c9", "#ffffff", "#b3261e", "#1b6e3c"
 
 FONT_SIZE, SMALL_FONT_SIZE, TITLE_FONT_SIZE = 11.0, 9.5, 16.0
 """Points."""

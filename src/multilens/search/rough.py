@@ -10,7 +10,10 @@ from multilens.question import Question
 from multilens.robust import Robust
 
 FEW = 64
-"""Depths that show a wave where to go; the polish and every claim have them all."""
+"""Depths that show a wave where to go; the last polish and every claim have them all."""
+
+FEW_DEVICES = 16
+"""Devices that show it, of a question that is asked of many."""
 
 
 @overload
@@ -20,12 +23,19 @@ def at_few_depths(question: Question) -> Question: ...
 def at_few_depths(question: Question) -> Question:
     """Give the question at some of its depths, both ends among them, each with the weight of those that it is nearest to in line.
 
-    The closed form of the thesis' cues costs the same at any number of depths, and a score of one's own has none: they stay as
-    they are.
+    Of a question that is asked of many devices, few of them are asked. The closed form of the thesis' cues costs the same at any
+    number of depths, and a score of one's own has none: they stay as they are.
     """
-    if isinstance(question, Robust):
-        return replace(question, problem=at_few_depths(question.problem))
-    if not isinstance(question, Problem) or question.has_closed_form or len(question.depths) <= FEW:
+    if isinstance(question, Robust) and not question.drawn.has_closed_form:
+        few = min(question.samples, FEW_DEVICES)
+        return replace(question, problem=_at_few_depths(question.problem), samples=few)
+    if not isinstance(question, Problem) or question.has_closed_form:
+        return question
+    return _at_few_depths(question)
+
+
+def _at_few_depths(question: Problem) -> Problem:
+    if len(question.depths) <= FEW:
         return question
     count = len(question.depths)
     chosen = torch.linspace(0, count - 1, FEW, dtype=torch.float64).round().long()

@@ -1,0 +1,32 @@
+"""A tolerance and where it is kept, on the picture of the errors."""
+
+import numpy as np
+import torch
+from matplotlib.axes import Axes
+
+from multilens.layout import Layout
+from multilens.plot.style import KEPT, SMALL_FONT_SIZE
+from multilens.problem import Problem
+from multilens.tolerance import Tolerance
+from multilens.working_range import allowed_error, working_range
+
+BAR = 0.022
+"""Height of the bar, as a part of the picture's."""
+
+
+def draw_tolerance(ax: Axes, problem: Problem, layout: Layout, tolerance: Tolerance) -> None:
+    """Draw the error that is allowed as a dotted line, and a bar along the foot at the depths whose error is within it.
+
+    Args:
+        ax: with the errors on it; its limits stay.
+        problem: what is asked.
+        layout: one layout, not a batch.
+        tolerance: largest error.
+    """
+    near, far = ax.get_xlim()
+    depths = torch.from_numpy(np.geomspace(near, far, 256))
+    ax.plot(depths, allowed_error(tolerance, depths), color=KEPT, linewidth=1.4, linestyle=(0, (1, 1.5)), zorder=4)
+    for begin, end in working_range(problem, layout, tolerance).intervals:
+        ax.axvspan(begin, end, 0, BAR, facecolor=KEPT, edgecolor="none", zorder=5)
+    place = {"transform": ax.transAxes, "ha": "right", "va": "bottom", "fontsize": SMALL_FONT_SIZE}
+    ax.text(0.995, BAR + 0.005, f"bar: error at most {tolerance}", color=KEPT, zorder=5, parse_math=False, **place)
