@@ -58,10 +58,10 @@ class WorkingRange:
         return sum(far - near for near, far in self.intervals) / (self.far - self.near)
 
     def __str__(self) -> str:
-        looked = f"{self.near:.6g} to {self.far:.6g} mm"
+        looked = f"{self.near:.5g} to {self.far:.5g} mm"
         if not self.intervals:
             return f"nowhere from {looked} is the error at most {self.tolerance}"
-        stretches = [f"{near:.6g} to {far:.6g} mm" if far > near else f"{far:.6g} mm" for near, far in self.intervals]
+        stretches = [f"{near:.5g} to {far:.5g} mm" if far > near else f"{far:.5g} mm" for near, far in self.intervals]
         part = f"all of {looked}" if self.whole else f"{', '.join(stretches)} ({self.share:.3g} of {looked})"
         return f"{part}, error at most {self.tolerance}"
 

@@ -39,4 +39,4 @@ def test_the_line_is_what_is_allowed(drawn):
 def test_the_words_name_the_tolerance(drawn):
     axes, problem, layout = drawn
     draw_tolerance(axes, problem, layout, Tolerance(mm=12.5, percent=0.25))
-    assert axes.texts[-1].get_text() == "bar: error at most 12.5 mm and 0.25 % of the depth"
+    assert axes.texts[-1].get_text() == "dots and bar: error at most 12.5 mm and 0.25 % of the depth"

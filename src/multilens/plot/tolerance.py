@@ -1,5 +1,7 @@
 """A tolerance and where it is kept, on the picture of the errors."""
 
+from typing import Any
+
 import numpy as np
 import torch
 from matplotlib.axes import Axes
@@ -28,5 +30,7 @@ def draw_tolerance(ax: Axes, problem: Problem, layout: Layout, tolerance: Tolera
     ax.plot(depths, allowed_error(tolerance, depths), color=KEPT, linewidth=1.4, linestyle=(0, (1, 1.5)), zorder=4)
     for begin, end in working_range(problem, layout, tolerance).intervals:
         ax.axvspan(begin, end, 0, BAR, facecolor=KEPT, edgecolor="none", zorder=5)
-    place = {"transform": ax.transAxes, "ha": "right", "va": "bottom", "fontsize": SMALL_FONT_SIZE}
-    ax.text(0.995, BAR + 0.005, f"bar: error at most {tolerance}", color=KEPT, zorder=5, parse_math=False, **place)
+    # Above the legend, where no curve is.
+    place: dict[str, Any] = {"textcoords": "offset points", "xycoords": "axes fraction", "ha": "left", "va": "bottom"}
+    words = f"dots and bar: error at most {tolerance}"
+    ax.annotate(words, (0, 1), xytext=(6, 24), color=KEPT, fontsize=SMALL_FONT_SIZE, parse_math=False, **place)
