@@ -1,4 +1,4 @@
-"""The least of some values and its gradient against torch's own; the smooth maximum and the smooth step: bounds and gradients."""
+"""The least of some values and its gradient against torch's own; the smooth maximum and the steep rise: bounds and gradients."""
 
 import pytest
 import torch
@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from torch.autograd import grad, gradcheck
 
-from multilens.numerics import least, smooth_step, soft_maximum
+from multilens.numerics import least, soft_maximum, steep_rise
 
 # Few different values, so that ties are common.
 columns = st.lists(st.lists(st.integers(0, 3), min_size=4, max_size=4), min_size=1, max_size=6)
@@ -68,17 +68,17 @@ def test_soft_maximum_of_values_far_from_zero_is_finite(far):
     assert soft_maximum(torch.full((3,), far, dtype=torch.float64), 1e-7).isfinite()
 
 
-def test_the_step_rises_from_zero_to_one_by_its_middle():
+def test_the_rise_goes_from_zero_to_one_most_of_it_at_once():
     values = torch.tensor([-1.0, 0.0, 0.5, 1.0, 2.0], dtype=torch.float64)
-    assert smooth_step(values).tolist() == [0, 0, 0.5, 1, 1]
+    assert steep_rise(values).tolist() == [0, 0, 0.875, 1, 1]
 
 
-def test_the_step_has_no_corner():
+def test_the_square_of_the_rise_has_no_corner():
     ends = torch.tensor([-1e-9, 1e-9, 1 - 1e-9, 1 + 1e-9], dtype=torch.float64, requires_grad=True)
-    (slope,) = grad(smooth_step(ends).sum(), ends)
-    assert slope.abs().max() < 1e-8
+    (slope,) = grad(steep_rise(ends).square().sum(), ends)
+    assert slope.abs().max() < 1e-7
 
 
-def test_the_step_passes_gradcheck():
-    values = torch.linspace(-0.5, 1.5, 40, dtype=torch.float64).requires_grad_()
-    assert gradcheck(smooth_step, [values])
+def test_the_rise_passes_gradcheck():
+    values = torch.linspace(-0.51, 1.5, 40, dtype=torch.float64).requires_grad_()
+    assert gradcheck(steep_rise, [values])

@@ -1,4 +1,4 @@
-"""A minimum, a smooth maximum and a smooth step, and what their gradients do."""
+"""A minimum, a smooth maximum and a steep rise, and what their gradients do."""
 
 from typing import Any
 
@@ -46,10 +46,9 @@ def soft_maximum(values: Float[Tensor, "*batch m"], width: float) -> Float[Tenso
     return (values / width).logsumexp(-1) * width
 
 
-def smooth_step(values: Float[Tensor, "..."]) -> Float[Tensor, "..."]:
-    """Give 0 up to 0, 1 from 1 on, and x^2 (3 - 2 x) between them.
+def steep_rise(values: Float[Tensor, "..."]) -> Float[Tensor, "..."]:
+    """Give 0 up to 0, 1 from 1 on, and 1 - (1 - x)^3 between them: most of the way at once, the rest gently.
 
-    Its gradient is continuous: 0 outside, 6 x (1 - x) between.
+    Its gradient jumps from 0 to 3 at 0 and falls to 0 at 1. That of its square is continuous everywhere.
     """
-    within = values.clamp(0, 1)
-    return within.square() * (3 - 2 * within)
+    return 1 - (1 - values.clamp(0, 1)) ** 3

@@ -11,7 +11,7 @@ from torch import Tensor
 from multilens.geometry.pairs import pair_distance, pair_indices
 from multilens.layout import Layout
 from multilens.lens import Lens
-from multilens.numerics import smooth_step
+from multilens.numerics import steep_rise
 from multilens.optics.usable import disparity_parallax, nearest_depth, overlap_parallax
 
 RAMP = 0.1
@@ -65,9 +65,10 @@ class PairLimits:
     ) -> Float[Tensor, "*batch p z"]:
         """Give 0 wherever a pair may not be used, 1 well inside its limits, and a smooth rise in the baseline between them.
 
-        With P the largest parallax it is step((1 - b / (P Z)) / RAMP): 1 from a ninth beyond the depth b / P on. An error divided
-        by it is never less than it was. Its derivative is continuous, and 0 where it is 0 or 1. The near focus needs no rise: no
-        layout moves it, and a search would only pay for what it cannot change.
+        With P the largest parallax it is 1 - (1 - x)^3, x = (1 - b / (P Z)) / RAMP: 1 from a ninth beyond the depth b / P on. An
+        error divided by it is never less than it was. What a pair tells, one over its squared error, is multiplied by the square,
+        whose derivative is continuous, and 0 where the factor is 0 or 1. The near focus needs no rise: no layout moves it, and a
+        search would only pay for what it cannot change.
 
         Args:
             layout: of these lenses.
@@ -79,7 +80,7 @@ class PairLimits:
         """
         largest_parallax, near_focus = self._of_pairs(lenses, layout)
         by_parallax = pair_distance(layout.position) / largest_parallax
-        within = smooth_step((1 - by_parallax.unsqueeze(-1) / depths) / RAMP)
+        within = steep_rise((1 - by_parallax.unsqueeze(-1) / depths) / RAMP)
         return within * (depths >= near_focus.unsqueeze(-1))
 
     def _of_pairs(self, lenses: Sequence[Lens], layout: Layout) -> tuple[Float[Tensor, " p"], Float[Tensor, " p"]]:
