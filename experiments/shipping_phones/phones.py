@@ -36,9 +36,9 @@ class Phone:
     island: str | None = None
     published: bool = False
 
-    def problem(self) -> ml.Problem:
-        """Give the phone as it ships."""
-        return build_problem(read_given([f"experiment=devices/{self.name}"]).config)
+    def problem(self, *words: str) -> ml.Problem:
+        """Give the phone as it ships, under the question of the presets or another one, key=value."""
+        return build_problem(read_given([f"experiment=devices/{self.name}", *words]).config)
 
 
 PHONES = (

@@ -10,6 +10,7 @@ import matplotlib.pyplot as plt
 from extend import extension_table
 from matplotlib.figure import Figure
 from phones import PHONES, SEED, Phone, freed, plausible, spacing, spread
+from photometric import photometric_rows
 
 import multilens as ml
 from multilens.plot.figures import overview_figure, save_figures
@@ -125,6 +126,7 @@ def main() -> None:
     for name, design in (("shipped", shown.shipped), ("best", shown.best)):
         assert isinstance(design.problem, ml.Problem)
         save_figures({f"iphone_15_pro_max_{name}": overview_figure(design.problem, design.layout)}, RESULTS)
+    write_table("photometric", photometric_rows(RESULTS))
     rows, extended = extension_table(RESULTS)
     write_table("extension", rows)
     save_figures(extended, RESULTS)

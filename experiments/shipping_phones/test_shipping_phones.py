@@ -94,3 +94,16 @@ def test_an_evaluation_of_today_finds_the_same(designs: dict[str, ml.Design]) ->
     design = designs["pixel_7"]
     assert isinstance(design.problem, ml.Problem)
     assert ml.evaluate(design.problem).score <= design.score * (1 + 1e-6)
+
+
+@pytest.mark.parametrize("phone", PHONES)
+def test_by_texture_and_noise_the_best_layout_is_no_worse(designs: dict[str, ml.Design], phone: str) -> None:
+    best = designs[f"{phone}_photometric"]
+    assert isinstance(best.problem, ml.Problem)
+    assert best.problem.score(designs[phone].layout).item() >= best.score * (1 - 1e-9)
+
+
+def test_the_photometric_table_shows_the_designs(designs: dict[str, ml.Design]) -> None:
+    shown = {row["phone"]: float(row["relative RMSE, best (%)"]) for row in table("photometric")}
+    assert shown["iPhone 13 Pro"] == pytest.approx(designs["iphone_13_pro_photometric"].figure, rel=5e-3)
+    assert shown["Galaxy S23 Ultra"] == pytest.approx(designs["galaxy_s23_ultra_photometric"].figure, rel=5e-3)
