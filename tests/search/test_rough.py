@@ -9,6 +9,7 @@ from multilens import Back, Layout, Lens, LensDefocus, Problem, linear_depths, l
 from multilens.cues.limited import LimitedStereo
 from multilens.cues.limits import PairLimits
 from multilens.disturbance import Disturbance
+from multilens.metrics import WorstCase
 from multilens.robust import Robust
 from multilens.search.rough import FEW, FEW_DEVICES, at_few_depths
 
@@ -50,6 +51,11 @@ def test_of_a_question_asked_of_many_devices_each_is_asked_at_few_depths() -> No
     assert isinstance(few, Robust)
     assert len(few.problem.depths) == FEW
     assert few.score(TWO).item() == pytest.approx(robust.score(TWO).item(), rel=0.02)
+
+
+def test_the_worst_case_of_the_thesis_cues_is_asked_at_every_depth() -> None:
+    worst = Problem(Back.rectangle(70, 20), [EYE] * 2, log_depths(200, 5000, 512), metric=WorstCase())
+    assert at_few_depths(worst) is worst
 
 
 def test_of_many_devices_few_are_asked_where_each_costs_time() -> None:

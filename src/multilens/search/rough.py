@@ -24,7 +24,8 @@ def at_few_depths(question: Question) -> Question:
     """Give the question at some of its depths, both ends among them, each with the weight of those that it is nearest to in line.
 
     Of a question that is asked of many devices, few of them are asked. The closed form of the thesis' cues costs the same at any
-    number of depths, and a score of one's own has none: they stay as they are.
+    number of depths, and a score of one's own has none: they stay as they are. So does the worst case of these cues: a focus
+    would hide between few depths.
     """
     if isinstance(question, Robust) and not question.drawn.has_closed_form:
         few = min(question.samples, FEW_DEVICES)
@@ -35,7 +36,7 @@ def at_few_depths(question: Question) -> Question:
 
 
 def _at_few_depths(question: Problem) -> Problem:
-    if len(question.depths) <= FEW:
+    if len(question.depths) <= FEW or (question.is_envelope and not question.metric.is_mean):
         return question
     count = len(question.depths)
     chosen = torch.linspace(0, count - 1, FEW, dtype=torch.float64).round().long()
