@@ -200,6 +200,11 @@ def test_tightest_is_a_broken_constraint_before_any_other():
     assert certificate.tightest.room == pytest.approx(-0.5)
 
 
+def test_closest_is_a_distance_between_things_and_no_bound():
+    certificate = check(Back.rectangle(20, 10), [(5.0, 5.0), (10.0, 5.0)], [2.0, 2.0])
+    assert (certificate.closest.what, certificate.closest.room) == ("lens 1 to lens 2", 1.0)
+
+
 # Shapely as the referee
 
 

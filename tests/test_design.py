@@ -180,8 +180,8 @@ def test_a_missing_file_is_named(tmp_path):
 
 
 def test_a_printed_design_is_a_table(design):
-    # Longest baseline sqrt(30.2^2 + 40^2); lens 1 to flash sqrt(14.9^2 + 0.2^2) - 1.1 - 1 - 3 - 0.5 = 9.3 is not the tightest:
-    # aperture 2.0 stands at its bound, with no room at all.
+    # Longest baseline sqrt(30.2^2 + 40^2); lens 1 to flash sqrt(14.9^2 + 0.2^2) - 1.1 - 1 - 3 - 0.5 = 9.3. That aperture 2.0
+    # stands at its bound is no clearance.
     assert str(design).splitlines() == [
         "lens  x (mm)  y (mm)  aperture radius (mm)  f-number     focus (mm)",
         "   1  20.100  30.200                 1.100      2.27          300.3",
@@ -190,7 +190,7 @@ def test_a_printed_design_is_a_table(design):
         "status              complete",
         f"RMSE                {design.score**0.5:.6g} mm",
         "longest baseline    50.120 mm, lens 1 to lens 2",
-        "tightest clearance  0 mm, aperture of lens 2",
+        "tightest clearance  9.3 mm, lens 1 to flash",
     ]
 
 
@@ -201,7 +201,7 @@ def test_a_printed_infeasible_design_is_its_reason(design):
 def test_a_printed_score_of_ones_own_has_no_unit():
     own = ScoreProblem(Back.disc(2.0), [Lens(1.0, (0.5, 2.0))], lambda layout: -layout.aperture_radius)
     lines = str(by_hand(own, Layout([[0.0, 0.0]], [1.5], [[1.0]]))).splitlines()
-    assert lines[-2:] == ["score               -1.5", "tightest clearance  0 mm, focus of lens 1"]
+    assert lines[-2:] == ["score               -1.5", "tightest clearance  0.5 mm, lens 1 within outline"]
 
 
 def test_a_design_tells_where_it_works():

@@ -25,11 +25,13 @@ class Clearance:
         what: the two things: "lens 1 to lens 2", "lens 3 to flash", "lens 1 within outline", "aperture of lens 2".
         room: distance beyond what is required, mm, rounded for reading.
         kept: whether it is >= 0, exactly.
+        between_things: whether it is a distance on the back; else it is the bound of an aperture, a focus or a locked place.
     """
 
     what: str
     room: float
     kept: bool
+    between_things: bool = True
 
 
 @dataclass(frozen=True)
@@ -51,6 +53,11 @@ class Certificate:
     def tightest(self) -> Clearance:
         """The broken constraint, or else the one, with the least room."""
         return min(self.clearances, key=lambda clearance: (clearance.kept, clearance.room))
+
+    @property
+    def closest(self) -> Clearance:
+        """The least distance on the back: which two things come nearest to touching."""
+        return min((each for each in self.clearances if each.between_things), key=lambda each: each.room)
 
 
 def certify(
@@ -121,4 +128,4 @@ def _at_most(what: str, square: Fraction, allowed: Fraction) -> Clearance:
 
 
 def _difference(what: str, room: Fraction) -> Clearance:
-    return Clearance(what, float(room), room >= 0)
+    return Clearance(what, float(room), room >= 0, between_things=False)

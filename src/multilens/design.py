@@ -291,8 +291,8 @@ class Design:
             facts["longest baseline"] = f"{baseline:.3f} mm, lens {first + 1} to lens {second + 1}"
         if self.bound is not None:
             facts["lower bound"] = self._bound_in_words(self.bound)
-        tightest = self.certificate.tightest
-        facts["tightest clearance"] = f"{tightest.room:.3g} mm, {tightest.what}"
+        closest = self.certificate.closest
+        facts["tightest clearance"] = f"{closest.room:.3g} mm, {closest.what}"
         wide = max(map(len, facts))
         return "\n".join([*table, "", *(f"{name:<{wide}}  {fact}" for name, fact in facts.items())])
 
