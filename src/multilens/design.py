@@ -280,7 +280,7 @@ class Design:
             facts["RMSE as drawn"] = f"{self.rmse:.6g} mm"
         if isinstance(self.problem, Problem):
             facts["RMSE"] = f"{self.rmse:.6g} mm"
-            if self.measured < 1:
+            if self.measured < 1 - ROUNDING:
                 facts["measured"] = f"{100 * self.measured:.3g} % of the depths"
             if self.problem.field is not None:
                 facts["depths and field"] = coverage_in_words(self.problem, self.layout)
