@@ -139,13 +139,14 @@ class Problem:
 
     def measured(self, layout: Layout) -> Float[Tensor, "*batch"]:
         """Give the share of the depths and of the field, by weight, at which anything measures."""
-        known, weights = self.errors(layout).isfinite(), self.weights.to(layout.position)
+        failed, weights = self.errors(layout).isinf(), self.weights.to(layout.position)
         lenses = [set(measurement.lenses) for measurement in self.measurements]
         shares = []
         for part in self.parts:
             seen = [k for k, own in enumerate(lenses) if own <= set(part.lenses)]
-            shares.append(part.share * (known[..., seen, :].any(-2) * weights).sum(-1))
-        return torch.stack(shares).sum(0)
+            shares.append(part.share * (failed[..., seen, :].all(-2) * weights).sum(-1))
+        # What is missing is added up, so that nothing missing is 1 exactly.
+        return 1 - torch.stack(shares).sum(0)
 
     @cached_property
     def score_weights(self) -> Float[Tensor, " z"]:
@@ -209,7 +210,7 @@ class Problem:
         return self.is_envelope and self.metric.is_mean
 
     def closed_form(self, device: torch.device) -> ClosedForm:
-        """Give the score with its gradient as one function, where `has_closed_form`; where it `is_envelope`, its line and Vs hold."""
+        """Give the score with its gradient at once, where `has_closed_form`; its line and Vs also where it `is_envelope`."""
         if device not in self._closed_forms:
             moments = DepthMoments(self.depths, self.score_weights).to(device)
             self._closed_forms[device] = ClosedForm(self.lenses, self.cues, moments)

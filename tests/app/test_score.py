@@ -1,9 +1,14 @@
 """Metric, fusion and histogram from a configuration, and what is refused of them."""
 
+from argparse import Namespace
+
 import pytest
 import torch
+from hydra import compose
 
 import multilens as ml
+from multilens.app import build
+from multilens.app.compose import open_hydra
 from multilens.app.refusal import RefusedError
 from multilens.app.schema import DepthConfig
 from multilens.app.schema_score import FusionConfig, FusionName, HistogramConfig, MetricConfig, MetricName
@@ -40,6 +45,13 @@ def test_without_a_histogram_all_depths_count_alike():
 def test_a_bin_without_a_depth_is_refused():
     with pytest.raises(RefusedError, match=r"depth\.histogram: every bin"):
         build_depths(depth([100, 101, 102, 400], [1, 1, 1]))
+
+
+def test_a_histogram_may_be_given_on_the_command_line():
+    with open_hydra(Namespace(config_path=None, config_dir=None)):
+        config = build.typed(compose("config", ["depth.histogram={edges: [200, 500, 5000], shares: [4, 1]}"]))
+    problem = build.build_problem(config)
+    assert problem.weights[problem.depths < 500].sum().item() == pytest.approx(0.8)
 
 
 @pytest.mark.parametrize(

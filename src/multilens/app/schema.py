@@ -148,14 +148,14 @@ class DepthConfig:
         far: mm.
         count: how many depths from near to far.
         spacing: linear or log.
-        histogram: how much the depths of each bin count; null where all count alike.
+        histogram: how much the depths of each bin count; without bins all count alike.
     """
 
     near: float = MISSING
     far: float = MISSING
     count: int = 512
     spacing: Spacing = Spacing["log"]
-    histogram: HistogramConfig | None = None
+    histogram: HistogramConfig = field(default_factory=HistogramConfig)
 
 
 @dataclass

@@ -31,7 +31,7 @@ def check_score(metric: MetricConfig, fusion: FusionConfig, depth: DepthConfig) 
         )
     if fusion.guess is not None and not (isfinite(fusion.guess) and fusion.guess > 0):
         raise RefusedError(f"fusion.guess must be > 0 mm and finite, or null, got {fusion.guess:g}")
-    if depth.histogram is not None:
+    if depth.histogram.edges or depth.histogram.shares:
         _check_histogram(depth)
 
 
@@ -62,14 +62,13 @@ def build_depths(config: DepthConfig) -> "tuple[Tensor, Tensor | None]":
     spread = {"linear": linear_depths, "log": log_depths}[config.spacing.name]
     with refused_at("depth"):
         depths = spread(config.near, config.far, config.count)
-    if config.histogram is None:
+    if not config.histogram.shares:
         return depths, None
     with refused_at("depth.histogram"):
         return depths, histogram_weights(depths, config.histogram.edges, config.histogram.shares)
 
 
 def _check_histogram(depth: DepthConfig) -> None:
-    assert depth.histogram is not None
     edges, shares = depth.histogram.edges, depth.histogram.shares
     if not 1 <= len(shares) <= MOST_BINS or len(edges) != len(shares) + 1:
         raise RefusedError(
