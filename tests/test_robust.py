@@ -1,5 +1,6 @@
 """A question asked of many devices, against closed forms, brute force and other devices."""
 
+from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -8,15 +9,19 @@ from torch import Tensor
 from torch.autograd import gradcheck
 
 from multilens import Back, Layout, Lens, LensDefocus, PairStereo, Problem, log_depths, solve
-from multilens.cues import LimitedStereo, PairLimits
+from multilens.cues import LimitedStereo, PairLimits, PhotometricDefocus, PhotometricStereo
 from multilens.cues.drift import Drift
 from multilens.disturbance import Disturbance
 from multilens.fusion import InverseVariance
 from multilens.metrics import Relative, WorstCase
 from multilens.question import Question
 from multilens.robust import Robust, as_drawn, without
+from multilens.scene import Scene
+from multilens.sensor import Sensor
 
 LENS = Lens(6.0, (0.5, 2.0), clearance=3.0, disparity_noise=0.0002, blur_noise=0.0002)
+CAMERA = replace(LENS, sensor=Sensor(1.2, 6000.0, 2.0, 0.3))
+SCENE = Scene(0.3, 20.0, 500.0, 10.0, 200)
 DEPTHS = log_depths(300, 2000, 32)
 PROBLEM = Problem(Back.rectangle(40, 30), [LENS] * 3, DEPTHS)
 LAYOUT = Layout([[6.0, 6.0], [33.0, 7.0], [8.0, 23.0]], [2.0, 1.9, 1.8], [600.0, 1100.0, 1700.0])
@@ -80,8 +85,9 @@ def test_what_is_minimised_is_what_is_claimed(level: float):
         Problem(PROBLEM.back, [LENS] * 3, DEPTHS, metric=Relative(), fusion=InverseVariance()),
         Problem(PROBLEM.back, [LENS] * 3, DEPTHS, metric=WorstCase()),
         Problem(PROBLEM.back, [LENS] * 3, DEPTHS, cues=[LimitedStereo(PairLimits(0.4)), LensDefocus()]),
+        Problem(PROBLEM.back, [CAMERA] * 3, DEPTHS, cues=[PhotometricStereo(SCENE), PhotometricDefocus(SCENE, 0.06)]),
     ],
-    ids=["relative, fused", "worst case", "limited"],
+    ids=["relative, fused", "worst case", "limited", "photometric"],
 )
 def test_every_metric_fusion_and_cue_is_claimed_exactly_and_never_below_what_is_minimised(problem: Problem):
     question = Robust(problem, ALL, 0.5, samples=4)
