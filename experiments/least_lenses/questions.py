@@ -7,7 +7,7 @@ from multilens.app.build import build_problem
 from multilens.app.given import read_given
 from multilens.inverse.answer import Answer
 
-SEARCH = partial(ml.solve, starts=32, patience=2, seed=0, proof=0)
+SEARCH = partial(ml.solve, starts=64, patience=4, seed=0, proof=0)
 """The seed was fixed before the first search."""
 
 MOST = 6

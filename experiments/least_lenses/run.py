@@ -6,7 +6,7 @@ python experiments/least_lenses/run.py
 from pathlib import Path
 
 from matplotlib.figure import Figure
-from matplotlib.ticker import FuncFormatter, MaxNLocator, NullFormatter
+from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
 from questions import COUNTS, GOAL, counted, smallest_apertures, smallest_islands, within_tolerance
 
 from multilens.inverse.answer import Answer
@@ -71,6 +71,7 @@ def figure(counts: list[list], least: list[list]) -> Figure:
         for axes in (reach, size, radius):
             axes.xaxis.set_major_locator(MaxNLocator(integer=True))
             axes.legend(frameon=False)
+        reach.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 3.0, 5.0)))
         reach.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
         reach.yaxis.set_minor_formatter(NullFormatter())
     return drawn
