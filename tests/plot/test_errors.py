@@ -8,6 +8,8 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from multilens.bands import winner_bands
+from multilens.cues import LimitedStereo
+from multilens.cues.limits import PairLimits
 from multilens.fusion import InverseVariance
 from multilens.layout import Layout
 from multilens.metrics import Relative
@@ -117,6 +119,16 @@ def test_measurements_together_are_a_line_below_the_best(cases):
         assert (np.interp(line.get_xdata(), *fused.get_data()) <= line.get_ydata() * (1 + 1e-3)).all()
     words = [text.get_text() for text in drawn(draw_winners, together, layout).axes[0].texts]
     assert any(word.startswith("measurement that tells most") for word in words)
+
+
+@pytest.mark.parametrize(("max_disparity", "told"), [(0.1, True), (1e3, False)])
+def test_the_guess_has_a_line_only_where_it_is_needed(cases, max_disparity, told):
+    problem, layout = cases["phone 4"]
+    limited = Problem(
+        problem.back, problem.lenses, problem.depths, cues=[LimitedStereo(PairLimits(max_disparity=max_disparity))]
+    )
+    legend = drawn(draw_errors, limited, layout).axes[0].get_legend()
+    assert ("with the guess" in [text.get_text() for text in legend.get_texts()]) == told
 
 
 def test_the_root_mean_square_is_in_millimetres_whichever_metric_is_asked_for(cases):

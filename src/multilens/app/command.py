@@ -57,6 +57,9 @@ def _plot(given: list[str]) -> int:
         raise RefusedError(
             f"plot: {folder} must be the folder of a run that found a design, there is no design.json in it"
         )
+    from multilens.app.loading import load_torch
+
+    load_torch()
     from multilens.runs import redraw
 
     try:

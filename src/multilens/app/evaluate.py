@@ -6,10 +6,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from multilens.app import build
-from multilens.app.ending import DONE, signals_held
+from multilens.app.ending import DONE
 from multilens.app.estimates import estimates, told
 from multilens.app.folder import refuse_used, write_folder
 from multilens.app.given import Given, read_given
+from multilens.app.loading import load_torch
 from multilens.app.refusal import RefusedError, one_line
 from multilens.app.tolerance import build_tolerance
 
@@ -59,8 +60,7 @@ def evaluate_command(words: Sequence[str]) -> int:
     if asked.out is not None:
         refuse_used(asked.out)
     given = None if asked.path is not None and not asked.lines else read_given(asked.lines)
-    with signals_held():
-        import torch  # noqa: F401
+    load_torch()
     from multilens.app.account import account
 
     if asked.path is None:

@@ -9,9 +9,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from multilens.app import build
-from multilens.app.ending import DONE, NOTHING_FOUND, signals_held, tell
+from multilens.app.ending import DONE, NOTHING_FOUND, tell
 from multilens.app.folder import refuse_used, write_folder
 from multilens.app.given import Given, read_given
+from multilens.app.loading import load_torch
 from multilens.app.refusal import RefusedError, meant, refused_at
 from multilens.app.tolerance import build_tolerance
 from multilens.tolerance import Tolerance
@@ -88,8 +89,7 @@ def least_command(words: Sequence[str]) -> int:
         return DONE
     asked = _sorted_words(words)
     goal = _goal(asked)
-    with signals_held():
-        import torch  # noqa: F401
+    load_torch()
     problem = _problem(asked)
     _refuse_strange_figure(asked, problem)
     answer = _answer(asked, problem, goal)

@@ -13,7 +13,8 @@ from hydra.core.hydra_config import HydraConfig
 from hydra.types import RunMode
 from omegaconf import DictConfig, OmegaConf
 
-from multilens.app.ending import BAD_INPUT, NOTHING_FOUND, SYSTEM_FAILED, signals_held, tell
+from multilens.app.ending import BAD_INPUT, NOTHING_FOUND, SYSTEM_FAILED, tell
+from multilens.app.loading import load_torch
 from multilens.app.refusal import RefusedError, one_line
 from multilens.app.search import NothingFoundError, search
 from multilens.app.tolerance import build_tolerance
@@ -43,8 +44,7 @@ def run_job(config: DictConfig) -> None:
     # Workers of other launchers share one terminal: a bar of each would overwrite the others'.
     in_process = not in_sweep or "basic_launcher" in hydra.launcher._target_
     try:
-        with signals_held():
-            import torch  # noqa: F401
+        load_torch()
         if in_sweep:
             _run_sweep_job(config, folder, list(hydra.overrides.task), log, in_process)
         else:

@@ -41,8 +41,8 @@ def draw_errors(ax: Axes, problem: Problem, layout: Layout) -> None:
     """Draw the error of every measurement against depth, thin, the least of them bold, and their root mean square.
 
     The bold line has the colour of the measurement that is best there. In focus a lens' error is 0, which a logarithmic axis
-    cannot show: the dips are cut at the lower edge. A measurement has no line where it fails. Where not the best alone counts, the
-    error of all measurements together is a black line.
+    cannot show: the dips are cut at the lower edge. A measurement has no line where it fails. Where more than the best counts, the
+    error of all measurements together, or with what is known before any, is a black line.
 
     Args:
         ax: drawn on; logarithmic where the depths span more than a factor 4.
@@ -74,7 +74,8 @@ def draw_errors(ax: Axes, problem: Problem, layout: Layout) -> None:
         x, y = np.r_[band.near, at[part], band.far], np.maximum(np.r_[ends[0], least[part], ends[1]], floor)
         look = {"color": measurement_colour(band.measurement), "solid_capstyle": "round", "zorder": 3}
         ax.plot(x, y, linewidth=3.0, marker="o" if len(at) == 1 else None, **look)
-    if _together(problem):
+    beside_the_best = _beside_the_best(problem, bool(np.isfinite(least).all()))
+    if beside_the_best:
         fused = problem.squared_error(layout.to(torch.float64), depths).detach().sqrt().numpy()
         ax.plot(at, np.maximum(fused, floor), color=INK, linewidth=1.4, zorder=4)
     ax.axhline(rmse, color=INK, linewidth=1.0, linestyle=(0, (5, 3)), zorder=4)
@@ -86,7 +87,7 @@ def draw_errors(ax: Axes, problem: Problem, layout: Layout) -> None:
     ax.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     ax.grid(True, which="major", color="#ececec", linewidth=0.8)
     ax.set_axisbelow(True)
-    _draw_legend(ax, problem, rmse)
+    _draw_legend(ax, problem, rmse, beside_the_best)
 
 
 def draw_winners(ax: Axes, problem: Problem, layout: Layout) -> None:
@@ -114,7 +115,7 @@ def draw_winners(ax: Axes, problem: Problem, layout: Layout) -> None:
         ax.add_patch(Rectangle((near, strip.bar), far - near, BAR_HEIGHT, facecolor=colour, edgecolor="none"))
     unnamed, short = _name_bands(strip, bands)
     unit = depth_unit(problem)
-    best = "measurement that tells most" if _together(problem) else "best measurement"
+    best = "best measurement" if isinstance(problem.fusion, Best) else "measurement that tells most"
     caption = f"{best}; it changes at the depths below ({unit.name})"
     depths = [bands[0].near, *(band.far for band in bands)] if bands[0].near < bands[-1].far else [bands[0].near]
     left_out = _write_depths(strip, depths, unit, caption + "; numbers are lenses" * short)
@@ -187,19 +188,21 @@ def _error_limits(
     return min(bottom, 0.3 * highest), 1.3 * min(largest or 1.0, 10 * highest)
 
 
-def _together(problem: Problem) -> bool:
-    """Whether more than the best measurement counts at a depth."""
-    return not isinstance(problem.fusion, Best) or problem.prior_error is not None
+def _beside_the_best(problem: Problem, measured_everywhere: bool) -> str:
+    """Name what counts at a depth beside the best measurement; empty where nothing does, or so little that it cannot be seen."""
+    if not isinstance(problem.fusion, Best):
+        return "all together"
+    return "with the guess" if problem.prior_error is not None and not measured_everywhere else ""
 
 
-def _draw_legend(ax: Axes, problem: Problem, rmse: float) -> None:
+def _draw_legend(ax: Axes, problem: Problem, rmse: float, beside_the_best: str) -> None:
     first = {measurement.cue: measurement for measurement in reversed(problem.measurements)}
     handles = [
         Line2D([], [], color=measurement_colour(m), linewidth=0.9, label=cue) for cue, m in reversed(first.items())
     ]
     handles.append(Line2D([], [], color=FAINT, linewidth=3.0, label="best of all"))
-    if _together(problem):
-        handles.append(Line2D([], [], color=INK, linewidth=1.4, label="all together"))
+    if beside_the_best:
+        handles.append(Line2D([], [], color=INK, linewidth=1.4, label=beside_the_best))
     handles.append(
         Line2D([], [], color=INK, linewidth=1.0, linestyle=(0, (5, 3)), label=f"RMSE {significant(rmse)} mm")
     )
