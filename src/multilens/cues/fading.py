@@ -73,12 +73,13 @@ class _FadingInFocus(Function):
         signal, bend = collected.minimum(full_well), ((share - FINEST) / EDGE + 1).clamp(min=0)
         transfer = log_diffraction_transfer(share)
         noise = relative_noise_squared(signal, read_noise)
-        # In the logarithm of A: the signal grows by 2 until the well is full, the share of the cutoff falls by itself.
-        by_light = (collected < full_well) * (2 / (signal * noise) - 4)
-        seen = share.clamp(max=FINEST)
-        by_share = 8 / pi * (1 - seen.square()).sqrt() / (transfer + FALL * (share - seen)).exp()
-        slope = by_light - share * (by_share + 2 * STEEPNESS / EDGE * bend)
-        ctx.save_for_backward(slope / radius)
+        if any(ctx.needs_input_grad):
+            # In the logarithm of A: the signal grows by 2 until the well is full, the share of the cutoff falls by itself.
+            by_light = (collected < full_well) * (2 / (signal * noise) - 4)
+            seen = share.clamp(max=FINEST)
+            by_share = 8 / pi * (1 - seen.square()).sqrt() / (transfer + FALL * (share - seen)).exp()
+            slope = by_light - share * (by_share + 2 * STEEPNESS / EDGE * bend)
+            ctx.save_for_backward(slope / radius)
         return noise.log() - 2 * transfer + rest + STEEPNESS * bend.square()
 
     @staticmethod
@@ -98,9 +99,10 @@ class _Faded(Function):
         below = y.clamp(max=CEILING)
         beyond = y.sub_(below).add_(1)
         value = below.exp_()
-        slope = torch.addcmul(value, value, bend, value=2 * STEEPNESS / FADE)
-        ctx.save_for_backward(slope, blur, reach, defocus)
-        ctx.in_focus = log_error.shape
+        if any(ctx.needs_input_grad):
+            slope = torch.addcmul(value, value, bend, value=2 * STEEPNESS / FADE)
+            ctx.save_for_backward(slope, blur, reach, defocus)
+            ctx.in_focus = log_error.shape
         return beyond.mul_(value)
 
     @staticmethod

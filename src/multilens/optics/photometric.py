@@ -74,7 +74,11 @@ def defocus_error(
     Reference:
         docs/photometric.md, "Defocus"; for small changes the thesis' equation 8.1 with the errors of a sensor.
     """
-    return depth**2 * (error_squared / (sharpness * power_change) ** 2 + (2 * frequency_error * defocus) ** 2).sqrt()
+    inverse_depth = error_squared.sqrt() / (sharpness * power_change)
+    # A known frequency is the rule, and a pass over all depths is dear.
+    if frequency_error:
+        inverse_depth = inverse_depth.hypot(2 * frequency_error * defocus)
+    return depth**2 * inverse_depth
 
 
 def equivalent_baseline(

@@ -4,13 +4,19 @@ import torch
 from jaxtyping import Float
 from torch import Tensor
 
-from multilens.cues import LensDefocus, PairStereo
+from multilens.cues import LensDefocus, LimitedStereo, PairStereo, PhotometricDefocus, PhotometricStereo
 from multilens.problem import Problem
 from multilens.question import Question
 from multilens.search.variables import Variables
 
 VALUES = 64
 """Tried for each focus, by equal factors over its range."""
+
+FEW_VALUES = 32
+"""The same where every cue is one of BROAD."""
+
+BROAD = (PairStereo, LimitedStereo, PhotometricStereo, PhotometricDefocus)
+"""Cues without the narrow bands of the thesis' defocus: a texture fades over a wide range of depths."""
 
 SWEEPS = 2
 """Through all foci; more change little, and the next wave comes anyway."""
@@ -20,6 +26,9 @@ FEW_AT_ONCE = 8
 
 MOST_AT_ONCE = 4096
 """Layouts tried together where every cue has to be asked."""
+
+ROUNDING = 1e-6
+"""Part of a score in single precision."""
 
 
 def refocus(
@@ -54,15 +63,24 @@ def refocus(
 
 def _one_by_one(question: Question, variables: Variables, share: Tensor, element: int) -> Tensor:
     """Try every value of one focus by asking the question for each."""
-    values = torch.linspace(0, 1, VALUES).to(share)
+    # Single precision is plenty to choose between values; a score of one's own may not be made for it.
+    kind = torch.float32 if isinstance(question, Problem) else share.dtype
+    values = torch.linspace(0, 1, _how_many(question)).to(share)
     best = []
     with torch.no_grad():
-        for layouts in share.split(max(1, MOST_AT_ONCE // VALUES)):
-            tried = layouts.unsqueeze(1).repeat(1, VALUES + 1, 1)
+        for layouts in share.split(max(1, MOST_AT_ONCE // len(values))):
+            tried = layouts.unsqueeze(1).repeat(1, len(values) + 1, 1)
             tried[:, :-1, element] = values
-            scores = question.terms(variables.layout_of(tried)).amax(-1).nan_to_num(nan=torch.inf)
+            scores = question.terms(variables.layout_of(tried).to(kind)).amax(-1).nan_to_num(nan=torch.inf)
+            # What is there stays unless another is better by more than roundings.
+            scores[:, -1] -= ROUNDING * scores[:, -1].abs()
             best.append(tried[torch.arange(len(tried)), scores.argmin(-1)])
     return torch.cat(best)
+
+
+def _how_many(question: Question) -> int:
+    broad = isinstance(question, Problem) and all(isinstance(cue, BROAD) for cue in question.cues)
+    return FEW_VALUES if broad else VALUES
 
 
 def _by_lines(problem: Problem, variables: Variables, share: Tensor, foci: list[int], afresh: bool) -> Tensor:
@@ -105,7 +123,7 @@ def _by_lines(problem: Problem, variables: Variables, share: Tensor, foci: list[
             least = torch.minimum(others.unsqueeze(1), slope[:, focus, None, None] * shapes)
             best, at = summed(least.square_()).min(-1)
             now = summed(torch.minimum(others, curves[:, focus]).square())
-            better = (best < now * (1 - 1e-6)) | (afresh and sweep == 0)
+            better = (best < now * (1 - ROUNDING)) | (afresh and sweep == 0)
             element = variables.focus_start + focus
             share[:, element] = torch.where(better, values[at], share[:, element])
             curves[:, focus] = torch.where(better.unsqueeze(-1), slope[:, focus, None] * shapes[at], curves[:, focus])
