@@ -38,6 +38,12 @@ def test_both_full_well_and_ratio_are_one_too_many():
         build_sensor("lens.sensor", both)
 
 
+@pytest.mark.parametrize("well", ["full_well", "snr"])
+def test_a_sensor_that_holds_no_light_is_refused_rather_than_unknown(well):
+    with pytest.raises(RefusedError, match=f"^lens.sensor: {well} must be > 0 and finite, got 0$"):
+        build_sensor("lens.sensor", SensorConfig(pixel_pitch_um=1.22, read_noise=3, efficiency=0.5, **{well: 0.0}))
+
+
 @pytest.mark.parametrize("config", [None, SensorConfig(pixel_pitch_um=1.22)])
 def test_a_sensor_of_which_something_is_unknown_is_unknown(config):
     assert build_sensor("lens.sensor", config) is None

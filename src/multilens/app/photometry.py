@@ -34,10 +34,9 @@ def build_sensor(key: str, config: SensorConfig | None) -> Sensor | None:
         raise RefusedError(f"{key} must have either full_well or snr, got both")
     if _unknown(config):
         return None
-    known = [config.pixel_pitch_um, config.full_well or config.snr, config.read_noise, config.efficiency]
     with refused_at(key):
         make = Sensor.from_snr if config.full_well is None else Sensor
-        return make(*(number for number in known if number is not None))
+        return make(*(number for number in _numbers(config).values() if number is not None))
 
 
 def refuse_unknown_sensors(cues: CuesConfig, lenses: LensesConfig) -> None:
@@ -60,7 +59,14 @@ def refuse_unknown_sensors(cues: CuesConfig, lenses: LensesConfig) -> None:
 
 def _unknown(config: SensorConfig) -> list[str]:
     """Name what must be known and is not."""
-    well = config.snr if config.full_well is None else config.full_well
-    numbers = {"pixel_pitch_um": config.pixel_pitch_um, "full_well": well}
-    numbers |= {"read_noise": config.read_noise, "efficiency": config.efficiency}
-    return [name for name, number in numbers.items() if number is None]
+    return [name for name, number in _numbers(config).items() if number is None]
+
+
+def _numbers(config: SensorConfig) -> dict[str, float | None]:
+    """Give what a sensor is made of, in the order it takes them; the ratio stands in for the full well."""
+    return {
+        "pixel_pitch_um": config.pixel_pitch_um,
+        "full_well": config.snr if config.full_well is None else config.full_well,
+        "read_noise": config.read_noise,
+        "efficiency": config.efficiency,
+    }
