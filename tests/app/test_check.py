@@ -30,6 +30,10 @@ BAD = {
     "bowtie": ([*POLYGON, BOWTIE], ["back.outline", "Self-intersection[5 5]"]),
     "NaN vertex": ([*POLYGON, "back.outline.points=[[0,0],[10,0],[nan,5]]"], ["back.outline: point 2", "nan"]),
     "huge vertex": ([*POLYGON, "back.outline.points=[[0,0],[10,0],[1e300,5]]"], ["back.outline: point 2", "1e+300"]),
+    "endless vertex": (
+        [*POLYGON, f"back.outline.points=[[0,0],[10,0],[1{400 * '0'},5]]"],
+        ["points.2", "a float can hold"],
+    ),
     "word for a vertex": ([*POLYGON, "back.outline.points=[[0,0],[x,0],[9,5]]"], ["back.outline.points.1", "'x'"]),
     "hole outside": ([*POLYGON, *HOLE_OUTSIDE], ["back.outline", "Hole lies outside shell"]),
     "field of another kind": (["back=rectangle", "back.outline.corner=3"], ["back.outline.corner", "got corner"]),

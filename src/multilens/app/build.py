@@ -231,7 +231,10 @@ def _ring(key: str, points: Any) -> list[Pair]:
 def _point(key: str, point: Any) -> Pair:
     if not isinstance(point, list) or not all(type(number) in (int, float) for number in point):
         raise RefusedError(one_line(f"{key} must be two numbers, got {point!r}"))
-    return _pair(key, [float(number) for number in point])
+    try:
+        return _pair(key, [float(number) for number in point])
+    except OverflowError:
+        raise RefusedError(f"{key} must be two numbers that a float can hold, got a larger one") from None
 
 
 _SHAPES: dict[ShapeKind, tuple[Callable[[str, ShapeConfig], Shape], set[str], set[str]]] = {
