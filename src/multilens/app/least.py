@@ -111,10 +111,12 @@ def _sorted_words(words: Sequence[str]) -> _Asked:
             f"least must be told of what: {', '.join(OPTIONS)}, as in multilens least lenses rmse=2 experiment=demo, "
             f"got {what or 'none'}{meant(what, OPTIONS)}"
         )
-    own = {
-        word.partition("=")[0]: word.partition("=")[2] for word in rest if word.partition("=")[0] in (*NUMBERS, "out")
-    }
-    lines = [word for word in rest if word.partition("=")[0] not in own]
+    named = [(word.partition("=")[0], word) for word in rest]
+    own = {name: word.partition("=")[2] for name, word in named if name in (*NUMBERS, "out")}
+    for name in own:
+        if len(same := [word for other, word in named if other == name]) > 1:
+            raise RefusedError(f"{name} must be given once, got {' '.join(same)}")
+    lines = [word for name, word in named if name not in own]
     folder = own.pop("out", None)
     if folder == "":
         raise RefusedError("out must be one folder, as in out=runs/fewest, got none")
@@ -124,6 +126,8 @@ def _sorted_words(words: Sequence[str]) -> _Asked:
     number = {name: _number(name, text) for name, text in own.items()}
     for name in number.keys() - OPTIONS[what] - {"rmse", "figure"}:
         raise RefusedError(f"{name} is no option of least {what}, got {name}={own[name]}")
+    if what == "lenses" and not number.get("most", 1.0).is_integer():
+        raise RefusedError(f"most must be a whole number of lenses, got {own['most']}")
     return _Asked(what, number, out, read_given(lines))
 
 
