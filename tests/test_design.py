@@ -8,7 +8,7 @@ import torch
 from multilens.back import Back
 from multilens.certificate import Certificate, Clearance, certify
 from multilens.convergence import Convergence
-from multilens.cues import PairStereo
+from multilens.cues import LimitedStereo, PairLimits, PairStereo
 from multilens.depths import log_depths
 from multilens.design import INFEASIBLE, Design
 from multilens.geometry.shape import disc
@@ -159,6 +159,16 @@ def test_what_does_not_hold_is_refused_in_one_line_that_names_the_file(saved, ch
         Design.load(saved)
     assert str(refusal.value).startswith(f"{saved}: {message}")
     assert "\n" not in str(refusal.value)
+
+
+@pytest.mark.parametrize("most", [0.05, 0.03], ids=["one depth of three", "none"])
+def test_a_share_that_another_machine_rounds_otherwise_is_read(most):
+    # Pairs fail nearer than b f / most = 15 / most = 300 or 500 mm. A share is 1 less what fails: it is rounded as 1 is.
+    cues = [LimitedStereo(PairLimits(max_disparity=most))]
+    problem = Problem(Back.rectangle(70, 150), [Lens(5.0, (1.0, 1.0))] * 2, [200, 250, 350], [1, 1, 1e-9], cues)
+    design = by_hand(problem, Layout([[10.0, 10.0], [13.0, 10.0]], [1.0, 1.0], [[300.0], [300.0]]))
+    rounded = resealed(design.to_json(), set_at("measured", design.measured + 2**-52))
+    assert Design.from_json(rounded).measured == design.measured
 
 
 def test_a_truncated_file_is_refused(saved):
