@@ -172,3 +172,10 @@ def test_an_answer_in_words():
 def test_numbers_out_of_their_range_are_refused(call, told: str):
     with pytest.raises(ValueError, match=f"^{told}$"):
         call()
+
+
+@pytest.mark.parametrize("find", [fewest_lenses, smallest_back, smallest_aperture])
+def test_what_is_asked_of_many_devices_has_no_least(find):
+    many = ml.Robust(pinholes(), ml.Disturbance(shift=0.1))
+    with pytest.raises(TypeError, match=r"^problem must be a Problem, got a Robust$"):
+        find(many, 1.0)

@@ -158,9 +158,11 @@ def fewest_lenses(
 
     Raises:
         ValueError: a number is out of its range.
+        TypeError: the question is not of one device as it is drawn, or its score is one's own.
     """
     if most < 1:
         raise ValueError(f"most must be >= 1 lens, got {most}")
+    _refuse_other_questions(problem)
     resource = LensCount(problem)
     task = _task(resource, goal, search, boxes, listener)
     trials: list[Trial] = []
@@ -197,9 +199,11 @@ def smallest_back(
 
     Raises:
         ValueError: a number is out of its range, or a smaller back would not lie within a larger one.
+        TypeError: as of `fewest_lenses`.
     """
     if not most > 0:
         raise ValueError(f"most must be > 0, got {most:g}")
+    _refuse_other_questions(problem)
     resource = BackSize(problem)
     task = _task(resource, goal, search, boxes, listener)
     return _least_between(task, min(resource.least, most), most, precision)
@@ -225,7 +229,9 @@ def smallest_aperture(
 
     Raises:
         ValueError: a number is out of its range, or the lenses' bounds leave nothing to choose.
+        TypeError: as of `fewest_lenses`.
     """
+    _refuse_other_questions(problem)
     resource = WidestAperture(problem)
     task = _task(resource, goal, search, boxes, listener)
     least = task.disproved(resource.least) or task.tried(resource.least)
@@ -233,6 +239,11 @@ def smallest_aperture(
         return task.answer([least])
     answer = _least_between(task, resource.least, resource.most, precision)
     return replace(answer, trials=(least, *answer.trials))
+
+
+def _refuse_other_questions(problem: Problem) -> None:
+    if not isinstance(problem, Problem):
+        raise TypeError(f"problem must be a Problem, got a {type(problem).__name__}")
 
 
 def _task(resource: Resource, goal: float | Tolerance, search: Search, boxes: int, listener: Listener) -> _Task:
