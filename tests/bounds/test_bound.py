@@ -233,3 +233,23 @@ def test_lenses_that_do_not_fit_have_no_bound(radius):
 def test_no_boxes_are_refused():
     with pytest.raises(ValueError, match="boxes must be >= 1, got 0"):
         ml.lower_bound(ml.Problem(ml.Back.disc(25), [EYE], [100.0]), 0)
+
+
+@pytest.mark.parametrize("metric", [ml.MeanSquare(), ml.WorstCase()], ids=["mean", "worst"])
+def test_no_bound_is_claimed_where_a_part_of_the_field_is_guessed(metric):
+    lens = ml.Lens(6.86, (0.5, 1.93), field_of_view_deg=60)
+    field = ml.Field([0, 40])
+    problem = ml.Problem(ml.Back.disc(20), [lens] * 2, ml.log_depths(200, 5000, 32), metric=metric, field=field)
+    assert ml.lower_bound(problem, 1).value is None
+
+
+@given(angles=st.lists(st.floats(0, 45), min_size=1, max_size=3), seed=st.integers(0, 99))
+@settings(max_examples=20, deadline=None)
+def test_no_layout_scores_below_the_bound_with_a_field(angles, seed):
+    lenses = [ml.Lens(6.86, (0.5, 1.93), field_of_view_deg=angle) for angle in (90, 60, 30)]
+    problem = ml.Problem(ml.Back.disc(20), lenses, ml.log_depths(200, 5000, 16), field=ml.Field(angles))
+    random = np.random.default_rng(seed)
+    turn = 2 * np.pi * random.random() + np.arange(3) * 2 * np.pi / 3
+    place = 18 * np.stack([np.cos(turn), np.sin(turn)], axis=1)
+    layout = ml.Layout(place.tolist(), [1.93] * 3, random.uniform(200, 5000, 3).tolist())
+    assert (ml.lower_bound(problem, 1).value or 0.0) <= problem.score(layout).item()

@@ -25,9 +25,9 @@ class Bound:
     """What is known of the best score that any layout can have.
 
     Args:
-        value: no feasible layout scores below it, mm^2; None where none is known.
+        value: no feasible layout scores below it, in the unit of the score; None where none is known.
         reason: why none is known; empty where one is.
-        root: the bound before the apertures were branched upon, mm^2; None where none is known.
+        root: the bound before the apertures were branched upon, in the same unit; None where none is known.
         boxes: of apertures that were looked at.
     """
 
@@ -45,13 +45,13 @@ class Bound:
 def lower_bound(problem: Question, boxes: int = 4000, target: float = inf) -> Bound:
     """Give a number that no feasible layout of a question scores below: see docs/bounds.md for the proof.
 
-    Known are bounds for the cues PairStereo and LensDefocus, alone or together. The same arguments give the same number: work is
-    limited by a count, never by the clock.
+    Known are bounds for the best of the cues PairStereo and LensDefocus, alone or together, where nothing is guessed. The same
+    arguments give the same number: work is limited by a count, never by the clock.
 
     Args:
         problem: what is asked.
         boxes: of apertures to look at, >= 1; more bring the bound closer, 1 is the plain bound of a few hundredths of a second.
-        target: a score that some layout has, mm^2; the work ends when the bound is within a ten-thousandth of it.
+        target: a score that some layout has; the work ends when the bound is within a ten-thousandth of it.
 
     Raises:
         ValueError: boxes is out of its range.
@@ -67,7 +67,7 @@ def lower_bound(problem: Question, boxes: int = 4000, target: float = inf) -> Bo
         return Bound(None, f"no bound is known for the cue {strange[0]}")
     if not isinstance(problem.fusion, Best):
         return Bound(None, f"no bound is known for the fusion {type(problem.fusion).__name__}")
-    if problem.guess is not None:
+    if problem.prior_error is not None:
         return Bound(None, "no bound is known where a guess stands in for what is not measured")
     kinds = kinds_of(problem)
     if kinds is None:
