@@ -88,3 +88,16 @@ def test_fused_errors_are_never_more_than_the_best():
     fused = Problem(Back.rectangle(70, 70), [LENS, LONG, LENS], linear_depths(300, 2000, 101), fusion=FUSED)
     # In focus, where the thesis' errors vanish, a fused one counts as a nanometre.
     assert (fused.squared_error(TRIPLE) <= problem.squared_error(TRIPLE) + NANOMETRE**2).all()
+
+
+@pytest.mark.parametrize("kind", [torch.float64, torch.float32])
+@pytest.mark.parametrize("smooth", [False, True])
+def test_where_nothing_measures_the_gradient_is_finite(smooth, kind):
+    cue = LimitedStereo(PairLimits(max_disparity=0.3))
+    # 50 mm apart they measure from 1000 mm on, in a search hardly at first.
+    just = 1000 * (1 + 1e-6)
+    problem = Problem(Back.rectangle(70, 70), [LENS] * 2, [200.0, just, 1500.0], cues=[cue], fusion=FUSED)
+    place = PAIR.position.to(kind).requires_grad_()
+    layout = Layout(place, PAIR.aperture_radius.to(kind), PAIR.focus.to(kind))
+    score = problem.squared_error(layout, smooth=smooth).sum()
+    assert grad(score, place)[0].isfinite().all()

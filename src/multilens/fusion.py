@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import inf
 from typing import Protocol, runtime_checkable
 
 import torch
@@ -87,8 +88,11 @@ class InverseVariance:
         smooth: bool = False,
     ) -> Float[Tensor, "*batch z"]:
         """Give one over the sum of what each cue tells."""
-        told = [_information(cue, layout, lenses, depths, smooth) for cue in cues if cue.measurements(lenses)]
-        return 1 / torch.stack(torch.broadcast_tensors(*told)).sum(0).clamp(max=1 / NANOMETRE**2)
+        each = [_information(cue, layout, lenses, depths, smooth) for cue in cues if cue.measurements(lenses)]
+        told = torch.stack(torch.broadcast_tensors(*each)).sum(0)
+        # The gradient of one over nothing is NaN even where it is not used, and squares what it divides by.
+        least = torch.finfo(told.dtype).tiny ** 0.5
+        return (1 / told.clamp(least, 1 / NANOMETRE**2)).where(told > 0, inf)
 
 
 def _information(cue: Cue, layout: Layout, lenses: Sequence[Lens], depths: Tensor, smooth: bool) -> Tensor:
