@@ -322,3 +322,13 @@ def test_a_batch_is_its_layouts_one_by_one(cue):
     z = depths(300.0, 600.0, 900.0)
     one_by_one = torch.stack([cue(layout[i], [LENS] * 4, z) for i in range(3)])
     torch.testing.assert_close(cue(layout, [LENS] * 4, z), one_by_one)
+
+
+@BOTH
+def test_a_claim_has_a_gradient_also_where_the_texture_is_lost(cue):
+    # At 40 mm it is so far out of focus that the error of its amplitude is no number of a float.
+    parts = [part.clone().requires_grad_() for part in vars(pair()).values()]
+    errors = cue(Layout(*parts), [LENS, LENS], depths(40.0, 950.0))
+    assert errors[..., 0].isinf().all()
+    slopes = grad(errors[..., 1].sum(), parts, allow_unused=True, materialize_grads=True)
+    assert all(slope.isfinite().all() for slope in slopes)

@@ -56,8 +56,10 @@ class PhotometricStereo:
         """Give the depth error of every pair, mm, infinite where it does not measure."""
         variance = self.direction_variance(layout, lenses, depths)
         first, second = pair_indices(len(lenses), depths.device)
-        errors = stereo_error(depths, _baseline(layout), variance[..., first, :] + variance[..., second, :])
-        return errors.masked_fill(~self.limits.usable(layout, lenses, depths), inf)
+        both = variance[..., first, :] + variance[..., second, :]
+        seen = both.isfinite() & self.limits.usable(layout, lenses, depths)
+        # An infinite variance would make the gradient NaN even where it is not used.
+        return stereo_error(depths, _baseline(layout), both.where(seen, 1)).masked_fill(~seen, inf)
 
     def smooth(
         self, layout: Layout, lenses: Sequence[Lens], depths: Float[Tensor, " z"]
@@ -162,7 +164,12 @@ class PhotometricDefocus:
         reach = sight.frequency * (radius.unsqueeze(-1) / 2)
         defocus = 1 / depths - 1 / focus.unsqueeze(-1)
         first, second = (sight.error_squared(reach, defocus + half) for half in (change / 2, -change / 2))
-        return defocus_error(depths, defocus, reach**2, change, first + second, self.frequency_error)
+        both = first + second
+        if smooth:
+            return defocus_error(depths, defocus, reach**2, change, both, self.frequency_error)
+        seen = both.isfinite()
+        errors = defocus_error(depths, defocus, reach**2, change, both.where(seen, 1), self.frequency_error)
+        return errors.masked_fill(~seen, inf)
 
 
 def _baseline(layout: Layout) -> Float[Tensor, "*batch p 1"]:

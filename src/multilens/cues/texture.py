@@ -57,7 +57,8 @@ class Sight:
         if self.smooth:
             return self.largest * faded(self.log_error, reach, defocus)
         log_error = self.log_error + (reach * defocus).square()
-        return self.largest * log_error.exp().where(log_error <= 0, inf)
+        # What overflows would make the gradient NaN even where it is not used.
+        return self.largest * log_error.clamp(max=0).exp().where(log_error <= 0, inf)
 
 
 def texture_sight(
