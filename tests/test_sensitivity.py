@@ -3,7 +3,17 @@
 import pytest
 import torch
 
-from multilens import Back, Layout, Lens, LensDefocus, PairStereo, Problem, linear_depths
+from multilens import (
+    Back,
+    Layout,
+    Lens,
+    LensDefocus,
+    LimitedStereo,
+    PairLimits,
+    PairStereo,
+    Problem,
+    linear_depths,
+)
 from multilens.metrics import Relative, WorstCase
 from multilens.sensitivity import Sensitivity, sensitivity
 
@@ -101,3 +111,12 @@ def test_a_layout_is_left_as_it_was():
     before = [part.clone() for part in vars(APART).values()]
     assert isinstance(sensitivity(PAIR, APART), Sensitivity)
     assert all(torch.equal(a, b) for a, b in zip(before, vars(APART).values(), strict=True))
+
+
+def test_what_nobody_knows_makes_no_error_where_nothing_measures():
+    # 20 mm apart they measure from 1000 mm on; what lies nearer is guessed.
+    limited = LimitedStereo(PairLimits(max_disparity=0.12))
+    told = sensitivity(Problem(BACK, [LENS] * 2, DEPTHS, cues=[limited]), APART)
+    measured = DEPTHS.where(DEPTHS >= 1000, 0)
+    expected = (measured.square().mean().sqrt() * 0.1 / 20).item()
+    assert told.lenses[0].unknown_shift == pytest.approx(expected, rel=1e-9)

@@ -233,7 +233,9 @@ def _figure_of_bias(problem: Problem, layout: Layout, lens: int, direction: Floa
 
     Along the baseline b of a pair a mistake a of one lens makes an error of Z^2 a . b / abs(b)^2.
     """
-    winners, depths = problem.winners(layout), problem.depths
+    errors, depths = problem.errors(layout), problem.depths
+    # Where every measurement fails none wins, and nothing that moves falsifies the guess.
+    winners = errors.argmin(-2).where(errors.isfinite().any(-2), -1)
     bias = torch.zeros(len(depths), 2, dtype=torch.float64)
     for k, measurement in enumerate(problem.measurements):
         if len(measurement.lenses) == 2 and lens in measurement.lenses:
