@@ -23,7 +23,7 @@ MOST_DEVICES = 4096
 """Of a robust problem that is read, for the same reason."""
 
 LATER = ("metric", "fusion", "guess", "field", "robust")
-"""Keys of a problem that are left out where nothing but the default was asked, as in files from before there were others."""
+"""Keys of a problem that are left out where nothing but the default was asked."""
 
 
 def lens_record(lens: Lens) -> Record:
