@@ -34,6 +34,11 @@ def kept(claim: Claim, error: Tensor, depths: Tensor = DEPTHS) -> Tensor:
     return error * MEAN_ABSOLUTE <= allowed
 
 
+def asked(claim: Claim, depths: Tensor = DEPTHS) -> Tensor:
+    """Say which depths are in the published range."""
+    return (depths >= claim.near) & (depths <= claim.far)
+
+
 def longest(within: Tensor, depths: Tensor = DEPTHS) -> tuple[float, float] | None:
     """Give both ends of the longest stretch, as a ratio of its ends, in which the error is kept."""
     best, start = None, None
@@ -88,7 +93,7 @@ class Band:
 def band(claim: Claim, texture: str, way: str, error: Tensor, depths: Tensor = DEPTHS) -> Band:
     """Sum up the errors of all settings."""
     within = kept(claim, error, depths)
-    covers = within[:, (depths >= claim.near) & (depths <= claim.far)].all(-1)
+    covers = within[:, asked(claim, depths)].all(-1)
     stretches = (longest(line, depths) for line in within)
     ends = tuple(ends for ends in stretches if ends is not None)
     return Band(claim, texture, way, len(error), within.double().mean(0), covers, ends)

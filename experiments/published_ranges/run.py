@@ -8,7 +8,7 @@ from pathlib import Path
 
 import figures
 import torch
-from predict import DEPTHS, Band, band, errors, shift_per_error
+from predict import DEPTHS, Band, asked, band, errors, shift_per_error
 from published import CLAIMS, MEAN_ABSOLUTE, Claim
 from settings import Setting, settings
 from systems import LENSES, PREDICT
@@ -115,8 +115,7 @@ def shift_line(claim: Claim, texture: str, stereo: Tensor) -> list[str]:
 
 def gain_lines(found: dict[str, Tensor], swept: list[Setting]) -> list[list[str]]:
     """Tell for each difference of the foci by how much defocus lowers the error of D3S' stereo in the published range."""
-    inside = (DEPTHS >= CLAIMS[0].near) & (DEPTHS <= CLAIMS[0].far)
-    saved = 1 - (found["both"] / found["stereo"])[:, inside]
+    saved = 1 - (found["both"] / found["stereo"])[:, asked(CLAIMS[0])]
     lines = []
     for change in dict.fromkeys(setting.power_change for setting in swept):
         chosen = saved[torch.tensor([setting.power_change == change for setting in swept])]
