@@ -73,7 +73,7 @@ def test_negative_scores_are_drawn_themselves_on_a_linear_axis():
 def test_the_axis_and_the_legend_have_the_metrics_unit():
     shares = Convergence((0, 5), torch.tensor([[4e-4, 1e-4]]), (0,), (1e-4,))
     ax = drawn(shares, 1e-4, Relative())
-    assert ax.get_ylabel() == "relative RMSE of the layout as it stands (%)"
+    assert ax.get_ylabel() == "relative RMSE (%)"
     assert "design: 1.000 %" in words(ax)
 
 

@@ -10,6 +10,7 @@ from matplotlib.patches import Rectangle
 from multilens.bands import winner_bands
 from multilens.cues import LimitedStereo
 from multilens.cues.limits import PairLimits
+from multilens.field_of_view import Field
 from multilens.fusion import InverseVariance
 from multilens.layout import Layout
 from multilens.metrics import Relative
@@ -95,6 +96,22 @@ def test_the_bold_line_is_never_above_a_thin_one(measured):
     for part in bold:
         for curve in (curve[np.isfinite(curve[:, 1])] for curve in thin):
             assert (part[:, 1] <= np.interp(part[:, 0], *curve.T, left=np.inf, right=np.inf) * (1 + 1e-6)).all()
+
+
+def test_the_bold_line_of_a_pair_keeps_to_the_pair_where_its_reach_ends(cases):
+    # The error of a pair goes with the square of the depth, also beside a jump to another pair.
+    bold = [line for line in drawn(draw_errors, *cases["limited"]).axes[0].lines if line.get_linewidth() == 3.0]
+    assert len(bold) > 1
+    for line in bold:
+        depth, error = line.get_xydata().T
+        assert np.allclose(error / depth**2, error[0] / depth[0] ** 2, rtol=1e-2)
+
+
+def test_the_axis_says_that_errors_are_straight_ahead_where_a_field_is_asked_for(cases):
+    problem, layout = cases["phone 2"]
+    field = Problem(problem.back, problem.lenses, problem.depths, field=Field.rings(60, 2))
+    assert drawn(draw_errors, problem, layout).axes[0].get_ylabel() == "depth error (mm)"
+    assert drawn(draw_errors, field, layout).axes[0].get_ylabel() == "depth error straight ahead (mm)"
 
 
 def test_the_zeros_of_defocus_do_not_stretch_a_logarithmic_axis(cases):

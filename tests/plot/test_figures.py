@@ -5,8 +5,12 @@ import torch
 
 import multilens.plot
 from multilens.convergence import Convergence
+from multilens.disturbance import Disturbance
+from multilens.field_of_view import Field
 from multilens.layout import Layout
 from multilens.plot.figures import design_figures, overview_figure, save_figures, title, warning
+from multilens.problem import Problem
+from multilens.robust import Robust
 
 CONVERGENCE = Convergence((0, 5), torch.tensor([[100.0, 25.0]]), (0,), (16.0,))
 
@@ -62,6 +66,19 @@ def test_files_are_named_for_their_figures(cases, tmp_path):
 def test_the_title_says_how_well_the_lenses_do(cases):
     problem, layout = cases["phone 4"]
     assert title(problem, layout) == f"4 lenses, RMSE {problem.score(layout).sqrt().item():.2f} mm over 0.20 to 5.00 m"
+
+
+def test_the_title_says_where_the_score_is_over_a_field(cases):
+    problem, layout = cases["phone 2"]
+    field = Problem(problem.back, problem.lenses, problem.depths, field=Field.rings(60, 2))
+    assert title(field, layout).endswith(" over 0.20 to 5.00 m and the field")
+
+
+def test_pictures_of_a_question_of_many_devices_tell_what_is_as_drawn(cases):
+    problem, layout = cases["phone 2"]
+    figures = design_figures(Robust(problem, Disturbance(covered=1), level=0.9), layout, CONVERGENCE)
+    assert {word.get_text().split(",")[0] for word in figures["layout"].texts} == {"2 lenses as drawn"}
+    assert figures["convergence"].axes[0].get_ylabel() == "RMSE of the worst 10 % of devices (mm)"
 
 
 def test_a_layout_that_breaks_a_constraint_is_not_shown_as_a_design(cases):

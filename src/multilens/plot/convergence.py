@@ -50,7 +50,7 @@ def draw_convergence(ax: Axes, convergence: Convergence, score: float, metric: M
         _tick_in_plain_numbers(ax)
     ax.set_xlabel("step of the interior-point method (in the first steps lenses may overlap)")
     read = "score" if metric is None else metric.name
-    ax.set_ylabel(f"{read} of the layout as it stands" + ("" if metric is None else f" ({metric.unit})"))
+    ax.set_ylabel(read + ("" if metric is None else f" ({metric.unit})"))
     ax.grid(True, which="major", color="#ececec", linewidth=0.8)
     ax.set_axisbelow(True)
     unit = "" if metric is None else f" {metric.unit}"

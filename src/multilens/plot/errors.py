@@ -42,7 +42,8 @@ def draw_errors(ax: Axes, problem: Problem, layout: Layout) -> None:
 
     The bold line has the colour of the measurement that is best there. In focus a lens' error is 0, which a logarithmic axis
     cannot show: the dips are cut at the lower edge. A measurement has no line where it fails. Where more than the best counts, the
-    error of all measurements together, or with what is known before any, is a black line.
+    error of all measurements together, or with what is known before any, is a black line. Of a field the errors straight ahead
+    are drawn, and the root mean square of the whole.
 
     Args:
         ax: drawn on; logarithmic where the depths span more than a factor 4.
@@ -66,11 +67,11 @@ def draw_errors(ax: Axes, problem: Problem, layout: Layout) -> None:
     # Widest first: a narrow dip must not drown in the round ends of its neighbours.
     measured = [band for band in winner_bands(problem, layout) if band.measurement != NOTHING]
     for band in sorted(measured, key=lambda band: band.near / band.far):
-        part = (at >= band.near) & (at <= band.far)
-        # A band that begins where others fail has no least error before it.
+        part = (at > band.near) & (at < band.far)
+        # At its ends the least of those that measure on both sides of them: to one that begins there the line would fall.
         own = errors[problem.measurements.index(band.measurement)]
-        curves = ((at, least), (at[np.isfinite(own)], own[np.isfinite(own)]))
-        ends = np.fmin(*(np.interp([band.near, band.far], *curve) for curve in curves))
+        curves = [(at, row) for row in errors] + [(at[np.isfinite(own)], own[np.isfinite(own)])]
+        ends = np.fmin.reduce([np.interp([band.near, band.far], *curve) for curve in curves])
         x, y = np.r_[band.near, at[part], band.far], np.maximum(np.r_[ends[0], least[part], ends[1]], floor)
         look = {"color": measurement_colour(band.measurement), "solid_capstyle": "round", "zorder": 3}
         ax.plot(x, y, linewidth=3.0, marker="o" if len(at) == 1 else None, **look)
@@ -79,7 +80,7 @@ def draw_errors(ax: Axes, problem: Problem, layout: Layout) -> None:
         fused = problem.squared_error(layout.to(torch.float64), depths).detach().sqrt().numpy()
         ax.plot(at, np.maximum(fused, floor), color=INK, linewidth=1.4, zorder=4)
     ax.axhline(rmse, color=INK, linewidth=1.0, linestyle=(0, (5, 3)), zorder=4)
-    ax.set_ylabel("depth error (mm)")
+    ax.set_ylabel("depth error (mm)" if problem.field is None else "depth error straight ahead (mm)")
     ax.set_xlabel(f"depth ({depth_unit(problem).name})")
     if logarithmic:
         ax.yaxis.set_major_locator(LogLocator(subs=ROUND_DIGITS if top < FEW_DECADES * bottom else (1.0,)))

@@ -16,7 +16,7 @@ from multilens.plot.tolerance import draw_tolerance
 from multilens.plot.units import depth_unit, significant
 from multilens.problem import Problem
 from multilens.question import Question
-from multilens.robust import as_drawn
+from multilens.robust import Robust, as_drawn
 from multilens.tolerance import Tolerance
 
 DOTS_PER_INCH = 200
@@ -45,15 +45,15 @@ def design_figures(
     """
     asked, problem = problem, as_drawn(problem)
     with style():
-        figures = {"layout": _figure(problem, layout, SHEET)}
+        figures = {"layout": _figure(asked, layout, SHEET)}
         draw_layout(_axes(figures["layout"], 0.15, 0.15, 8.7, 5.85), problem, layout)
         if isinstance(problem, Problem):
-            figures["errors"] = _figure(problem, layout, SHEET)
+            figures["errors"] = _figure(asked, layout, SHEET)
             _draw_errors_and_winners(figures["errors"], problem, layout, tolerance, 0.95, 7.75)
         if convergence is not None:
-            figures["convergence"] = _figure(problem, layout, SHEET)
+            figures["convergence"] = _figure(asked, layout, SHEET)
             score = asked.score(layout).item()
-            draw_convergence(_axes(figures["convergence"], 0.95, 0.75, 7.75, 4.85), convergence, score, problem.metric)
+            draw_convergence(_axes(figures["convergence"], 0.95, 0.75, 7.75, 4.85), convergence, score, asked.metric)
     return figures
 
 
@@ -65,9 +65,9 @@ def overview_figure(problem: Question, layout: Layout, tolerance: Tolerance | No
         layout: one layout, not a batch.
         tolerance: that is marked on the errors, or None for none.
     """
-    problem = as_drawn(problem)
+    asked, problem = problem, as_drawn(problem)
     with style():
-        figure = _figure(problem, layout, WIDE)
+        figure = _figure(asked, layout, WIDE)
         if isinstance(problem, Problem):
             draw_layout(_axes(figure, 0.15, 0.15, 6.35, 6.4), problem, layout)
             _draw_errors_and_winners(figure, problem, layout, tolerance, 7.35, 5.65)
@@ -100,14 +100,16 @@ def save_figures(figures: Mapping[str, Figure], folder: Path | str) -> tuple[Pat
 
 
 def title(problem: Question, layout: Layout) -> str:
-    """Say in one line how many lenses there are and how well they do over which depths."""
-    lenses = "1 lens" if layout.count == 1 else f"{layout.count} lenses"
+    """Say in one line how many lenses there are and how well they do over which depths, of many devices the one as drawn."""
+    lenses = ("1 lens" if layout.count == 1 else f"{layout.count} lenses") + " as drawn" * isinstance(problem, Robust)
+    problem = as_drawn(problem)
     score, metric = problem.score(layout).item(), problem.metric
     if not isinstance(problem, Problem) or metric is None:
         return f"{lenses}, score {significant(score, 6)}"
     near, far = problem.depths.min().item(), problem.depths.max().item()
     over = depth_unit(problem).range(near, far) if far > near else depth_unit(problem).text(far)
-    return f"{lenses}, {metric.name} {significant(metric.figure(score))} {metric.unit} {'over' if far > near else 'at'} {over}"
+    over = f"{'over' if far > near else 'at'} {over}{'' if problem.field is None else ' and the field'}"
+    return f"{lenses}, {metric.name} {significant(metric.figure(score))} {metric.unit} {over}"
 
 
 def warning(problem: Question, layout: Layout) -> str:
