@@ -36,7 +36,20 @@ BAD = {
     ),
     "word for a vertex": ([*POLYGON, "back.outline.points=[[0,0],[x,0],[9,5]]"], ["back.outline.points.1", "'x'"]),
     "hole outside": ([*POLYGON, *HOLE_OUTSIDE], ["back.outline", "Hole lies outside shell"]),
-    "field of another kind": (["back=rectangle", "back.outline.corner=3"], ["back.outline.corner", "got corner"]),
+    "field of another kind": (
+        ["back=rectangle", "back.outline.corner=3"],
+        ["back.outline.corner", "got corner; set back.outline.corner=null"],
+    ),
+    "polygon over a preset's shape": (
+        ["back.outline={kind: polygon, points: [[0,0],[90,0],[90,90]]}"],
+        ["set back.outline.corner=null back.outline.height=null back.outline.width=null"],
+    ),
+    "radius beside a preset's f-number": (
+        ["lenses.lens.aperture_radius=[0.3,1]"],
+        ["lenses.lens must have either", "got both; set the other to null, as in lenses.lens.f_number=null"],
+    ),
+    "neither radius nor f-number": (["lenses.lens.f_number=null"], ["lenses.lens must have either", "got neither"]),
+    "a key taken away": (["~lenses.lens.f_number"], ["~lenses.lens.f_number", "set lenses.lens.f_number=null"]),
     "missing field": (["back=rectangle", "back.outline.width=null"], ["back.outline.width is missing"]),
     "negative clearance": (["back.keep_outs.flash.clearance=-1"], ["back.keep_outs.flash", "got -1"]),
     "class to call": (["_target_=numpy.load"], ["_target_", "unknown key"]),

@@ -196,7 +196,7 @@ def _build_lens(key: str, config: LensConfig) -> Lens:
         "sensor": build_sensor(f"{key}.sensor", config.sensor),
     }
     if (config.aperture_radius is None) == (config.f_number is None):
-        given = "neither" if config.f_number is None else "both"
+        given = "neither" if config.f_number is None else f"both; set the other to null, as in {key}.f_number=null"
         raise RefusedError(f"{key} must have either aperture_radius or f_number, got {given}")
     with refused_at(key):
         if config.f_number is not None:
@@ -251,10 +251,10 @@ def _build_shape(key: str, config: ShapeConfig) -> Shape:
     given = {name for name, value in vars(config).items() if value is not None} - {"kind"}
     for name in sorted(needed - given):
         raise RefusedError(f"{key}.{name} is missing: a {config.kind.name} needs {', '.join(sorted(needed))}")
-    for name in sorted(given - needed - allowed):
-        raise RefusedError(
-            f"{key}.{name}: a {config.kind.name} takes {', '.join(sorted(needed | allowed))}, got {name}"
-        )
+    others = sorted(given - needed - allowed)
+    if others:
+        takes, nothing = ", ".join(sorted(needed | allowed)), " ".join(f"{key}.{name}=null" for name in others)
+        raise RefusedError(f"{key}.{others[0]}: a {config.kind.name} takes {takes}, got {others[0]}; set {nothing}")
     with refused_at(key):
         return make(key, config)
 

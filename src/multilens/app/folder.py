@@ -25,5 +25,6 @@ def write_folder(folder: Path, design: "Design", config_text: str, log_text: str
 
     folder.parent.mkdir(parents=True, exist_ok=True)
     write_run(folder, design, config_text, log_text)
+    print()
     for path in sorted(folder.iterdir()):
         print(path)

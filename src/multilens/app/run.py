@@ -69,9 +69,10 @@ def _run_alone(config: DictConfig, folder: Path, log: list[str]) -> None:
     print(design)
     marks = _estimates(config)
     if marks:
-        print(f"\n{marks}\n")
+        print(f"\n{marks}")
         log.append(marks)
     write_run(folder, design, _text(config), _lines(log))
+    print()
     for path in sorted(folder.iterdir()):
         print(_from_here(path))
 

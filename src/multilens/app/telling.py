@@ -32,6 +32,9 @@ def _line_of(error: Exception) -> str:
         return no_such_option(group or "configuration", name, error.options)
     if isinstance(cause, ConfigKeyError | ConfigAttributeError) and cause.full_key:
         return unknown_key(str(cause.full_key), str(cause.full_key))
+    if isinstance(cause, OmegaConfBaseException) and "does not support deletion" in str(cause):
+        given = str(error).removeprefix("Error merging override ").splitlines()[0].partition(":")[0]
+        return one_line(f"{given}: ~ must name one of a list, as a keep-out; set {given.lstrip('~')}=null instead")
     if isinstance(cause, OmegaConfBaseException) and cause.full_key:
         at = (
             str(error).removeprefix("Error merging override ").splitlines()[0] if cause is not error else cause.full_key
