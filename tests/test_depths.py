@@ -59,3 +59,20 @@ def test_depths_in_any_order_keep_their_weights():
 def test_a_histogram_that_does_not_fit_is_refused(edges, message):
     with pytest.raises(ValueError, match=message):
         histogram_weights(linear_depths(100, 400, 7), edges, [1.0] * (len(edges) - 1))
+
+
+@pytest.mark.parametrize(
+    ("edges", "shares", "message"),
+    [
+        ([100, 400], [], "shares must be one fewer than edges, at least one, got 0 and 2"),
+        ([100, 250, 400], [1], "shares must be one fewer than edges, at least one, got 1 and 3"),
+        ([100, 300, 200, 400], [1, 1, 1], "edges must ascend"),
+        ([100, nan, 400], [1, 1], "edges must ascend"),
+        ([100, 250, 400], [1, -1], "shares must be finite and >= 0, not all 0"),
+        ([100, 250, 400], [1, nan], "shares must be finite and >= 0, not all 0"),
+        ([100, 250, 400], [0, 0], "shares must be finite and >= 0, not all 0"),
+    ],
+)
+def test_what_is_no_histogram_is_refused(edges, shares, message):
+    with pytest.raises(ValueError, match=f"^{message}"):
+        histogram_weights(linear_depths(100, 400, 7), edges, shares)

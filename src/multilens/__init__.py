@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from multilens.cues import PhotometricStereo as PhotometricStereo
     from multilens.cues import PrintedDefocus as PrintedDefocus
     from multilens.cues.drift import Drift as Drift
+    from multilens.depths import histogram_weights as histogram_weights
     from multilens.depths import linear_depths as linear_depths
     from multilens.depths import log_depths as log_depths
     from multilens.design import Design as Design
@@ -84,6 +85,7 @@ _HOME = {
     "distance_penalty": "penalty",
     "evaluate": "search.evaluate",
     "fewest_lenses": "inverse.least",
+    "histogram_weights": "depths",
     "linear_depths": "depths",
     "log_depths": "depths",
     "lower_bound": "bounds.bound",

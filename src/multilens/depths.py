@@ -1,6 +1,7 @@
 """Depths spread over a range, and how much each counts."""
 
 from collections.abc import Sequence
+from itertools import pairwise
 from math import isfinite
 
 import torch
@@ -48,15 +49,16 @@ def histogram_weights(
 
     Args:
         depths: mm.
-        edges: of the bins, ascending, mm; a depth at an edge belongs to the bin beyond it, the last to the last bin.
-        shares: of each bin, >= 0; one fewer than edges.
+        edges: of the bins, ascending, mm, at least two; a depth at an edge belongs to the bin beyond it, the last to the last bin.
+        shares: of each bin, >= 0, any scale, not all 0; one fewer than edges.
 
     Returns:
         Weights that sum to 1; within a bin all are alike.
 
     Raises:
-        ValueError: a depth lies outside all bins, or a bin with a share has no depth.
+        ValueError: edges or shares are no histogram, a depth lies outside all bins, or a bin with a share has no depth.
     """
+    _refuse_unless_histogram(edges, shares)
     bounds, share = (torch.tensor(numbers, dtype=torch.float64) for numbers in (edges, shares))
     if not ((depths >= bounds[0]) & (depths <= bounds[-1])).all():
         raise ValueError(f"edges must enclose all depths, got {edges[0]:g} to {edges[-1]:g} mm")
@@ -65,6 +67,15 @@ def histogram_weights(
     if ((count == 0) & (share > 0)).any():
         raise ValueError("every bin with a share must have a depth in it: more depths, or wider bins")
     return (share / share.sum() / count)[at]
+
+
+def _refuse_unless_histogram(edges: Sequence[float], shares: Sequence[float]) -> None:
+    if not shares or len(edges) != len(shares) + 1:
+        raise ValueError(f"shares must be one fewer than edges, at least one, got {len(shares)} and {len(edges)}")
+    if not all(first < last for first, last in pairwise(edges)):
+        raise ValueError(f"edges must ascend, got {', '.join(f'{edge:g}' for edge in edges[:8])}")
+    if not all(isfinite(share) and share >= 0 for share in shares) or not sum(shares) > 0:
+        raise ValueError("shares must be finite and >= 0, not all 0")
 
 
 def _refuse_unless_depth_range(near: float, far: float, count: int) -> None:
