@@ -48,6 +48,10 @@ BAD = {
         ["lenses.lens.aperture_radius=[0.3,1]"],
         ["lenses.lens must have either", "got both; set the other to null, as in lenses.lens.f_number=null"],
     ),
+    "an entry without a plus": (
+        ["back.keep_outs={ir: {shape: {kind: disc, radius: 6}}}"],
+        ["back.keep_outs.ir", "a + before the key adds it"],
+    ),
     "neither radius nor f-number": (["lenses.lens.f_number=null"], ["lenses.lens must have either", "got neither"]),
     "a key taken away": (["~lenses.lens.f_number"], ["~lenses.lens.f_number", "set lenses.lens.f_number=null"]),
     "missing field": (["back=rectangle", "back.outline.width=null"], ["back.outline.width is missing"]),

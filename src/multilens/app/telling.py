@@ -6,7 +6,7 @@ from contextlib import contextmanager
 from hydra.errors import HydraException, MissingConfigException, OverrideParseException
 from omegaconf.errors import ConfigAttributeError, ConfigKeyError, OmegaConfBaseException
 
-from multilens.app.keys import no_such_option, unknown_key
+from multilens.app.keys import is_known, no_such_option, unknown_key
 from multilens.app.refusal import RefusedError, one_line
 
 
@@ -31,7 +31,10 @@ def _line_of(error: Exception) -> str:
         group, _, name = error.missing_cfg_file.rpartition("/")
         return no_such_option(group or "configuration", name, error.options)
     if isinstance(cause, ConfigKeyError | ConfigAttributeError) and cause.full_key:
-        return unknown_key(str(cause.full_key), str(cause.full_key))
+        key = str(cause.full_key)
+        if is_known(key.split(".")):
+            return one_line(f"{key} is not there yet: a + before the key adds it")
+        return unknown_key(key, key)
     if isinstance(cause, OmegaConfBaseException) and "does not support deletion" in str(cause):
         given = str(error).removeprefix("Error merging override ").splitlines()[0].partition(":")[0]
         return one_line(f"{given}: ~ must name one of a list, as a keep-out; set {given.lstrip('~')}=null instead")
