@@ -171,6 +171,14 @@ def test_a_share_that_another_machine_rounds_otherwise_is_read(most):
     assert Design.from_json(rounded).measured == design.measured
 
 
+def test_a_printed_design_tells_the_guess_where_nothing_measures():
+    # 20 mm at a parallax of at most 0.05 mm behind 5 mm measure from 2000 mm on: one of two depths that spread by 900 mm.
+    lens, cue = Lens(5, (1, 1), (200, 5000), disparity_noise=1e-3), LimitedStereo(PairLimits(max_disparity=0.05))
+    half = Problem(Back.rectangle(40, 10), [lens] * 2, [1200.0, 3000.0], cues=[cue])
+    told = str(by_hand(half, Layout([(10, 5), (30, 5)], [1, 1], [1000, 1000])))
+    assert "50 % of the depths; the error of the others is a guess, 900 mm" in told
+
+
 def test_a_truncated_file_is_refused(saved):
     saved.write_bytes(saved.read_bytes()[:-100])
     with pytest.raises(ValueError, match=r"design\.json: must be whole JSON, got "):

@@ -282,6 +282,8 @@ class Design:
             facts["RMSE"] = f"{self.rmse:.6g} mm"
             if self.measured < 1 - ROUNDING:
                 facts["measured"] = f"{100 * self.measured:.3g} % of the depths"
+                if self.problem.prior_error is not None:
+                    facts["measured"] += f"; the error of the others is a guess, {self.problem.prior_error:.4g} mm"
             if self.problem.field is not None:
                 facts["depths and field"] = coverage_in_words(self.problem, self.layout)
         if self.tolerance is not None:
