@@ -47,7 +47,7 @@ class Question(Protocol):
         ...
 
     def score(self, layout: Layout) -> Float[Tensor, "*batch"]:
-        """Give the score that may be claimed: exact, and never more than the largest of the terms."""
+        """Give the score that may be claimed: exact, whatever the terms of a search make of it."""
         ...
 
 

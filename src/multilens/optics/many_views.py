@@ -28,7 +28,8 @@ def view_information(
 
         I = sum_{i<j} w'_i w'_j u'_ij b_ij^2 / sum_i w'_i.
 
-    It is never less than what the best pair tells alone, and never more than what all views tell.
+    It is never less than what the best pair tells alone, and never more than what all views tell. It may fall where a pair
+    may be used more or a lens sees better: one that has but a near neighbour draws the mean to itself.
 
     Args:
         baseline: distance of the two lenses of every pair, in the order of `pair_indices`, mm.
