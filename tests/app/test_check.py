@@ -18,6 +18,7 @@ BAD = {
     "wrong type": (["lenses.count=abc"], ["lenses.count", "abc", "Integer"]),
     "word not in the list": (["depth.spacing=cubic"], ["depth.spacing", "cubic", "linear, log"]),
     "unknown cue": (["cues.names=[stereo,smell]"], ["cues.names", "smell"]),
+    "no ring": (["field_of_view.rings=0"], ["field_of_view.rings", "from 1 to 1024", "got 0"]),
     "no cue": (["cues.names=[]"], ["cues.names", "none"]),
     "no lens": (["lenses.count=0"], ["lenses.count", "from 1 to 64", "got 0"]),
     "many lenses": (["lenses.count=65"], ["lenses.count", "got 65"]),

@@ -63,6 +63,14 @@ def test_the_printed_form_has_its_relative_errors():
         (config("limited_stereo", max_disparity=0.0), "cues.limits.max_disparity must be > 0 mm and finite, .* got 0"),
         (config("limited_stereo", least_overlap=1.0), "cues.limits.least_overlap must be >= 0 and < 1, got 1"),
         (config("stereo", least_overlap=0.5), "cues.limits are for limited_stereo, .* got cues.names of stereo"),
+        (
+            CuesConfig([CueName["stereo"]], two_images=TwoImagesConfig(1.0)),
+            "cues.two_images are for photometric_defocus, got cues.names of stereo, which have none",
+        ),
+        (
+            CuesConfig([CueName["stereo"]], relative_errors=RelativeErrorsConfig(change=0.1)),
+            "cues.relative_errors are for printed_defocus, got cues.names of stereo, which have none",
+        ),
         (images(), "cues.two_images.power_change_dioptres must be set for photometric_defocus, got null"),
         (images(-1.0), "cues.two_images: power_change_dioptres must be > 0 and finite, got -1"),
         (images(1.0, 2.0), "cues.two_images: light_share must be > 0 and <= 1, got 2"),

@@ -132,12 +132,12 @@ def build_lenses(config: LensesConfig) -> tuple[Lens, ...]:
 
 def build_field(config: FieldOfViewConfig) -> Field | None:
     """Make the field in which depth is asked for; None for straight ahead alone."""
+    _refuse_unless_count("field_of_view.rings", config.rings, 1, MOST_RINGS)
     if config.whole_deg is None:
         return None
     whole = config.whole_deg
     if not 0 < whole < 180:
         raise RefusedError(f"field_of_view.whole_deg must be > 0 and < 180 degrees, or null, got {whole:g}")
-    _refuse_unless_count("field_of_view.rings", config.rings, 1, MOST_RINGS)
     return Field.rings(whole, config.rings)
 
 

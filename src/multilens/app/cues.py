@@ -4,15 +4,19 @@ from math import isfinite
 from typing import TYPE_CHECKING
 
 from multilens.app.refusal import RefusedError, refused_at
-from multilens.app.schema_cues import CueName, CuesConfig, PairLimitsConfig, RelativeErrorsConfig, TwoImagesConfig
+from multilens.app.schema_cues import CueName, CuesConfig, RelativeErrorsConfig, TwoImagesConfig
 from multilens.ranges import refuse_unless_not_negative, refuse_unless_positive, refuse_unless_share
 from multilens.scene import Scene
 
 if TYPE_CHECKING:
     from multilens.cues import Cue
 
-LIMITED = (CueName["limited_stereo"], CueName["photometric_stereo"])
-"""The cues that ask when a pair may be used."""
+READ_BY = {
+    "limits": (CueName["limited_stereo"], CueName["photometric_stereo"]),
+    "two_images": (CueName["photometric_defocus"],),
+    "relative_errors": (CueName["printed_defocus"],),
+}
+"""The cues that read each part of the configuration; beside others alone it would count for nothing."""
 
 
 def check_cues(config: CuesConfig) -> None:
@@ -31,9 +35,10 @@ def check_cues(config: CuesConfig) -> None:
         raise RefusedError(f"cues.limits.max_disparity must be > 0 mm and finite, or null for any, got {most:g}")
     if not 0 <= limits.least_overlap < 1:
         raise RefusedError(f"cues.limits.least_overlap must be >= 0 and < 1, got {limits.least_overlap:g}")
-    if limits != PairLimitsConfig() and not set(LIMITED) & set(config.names):
-        words, given = (", ".join(cue.name for cue in names) for names in (LIMITED, config.names))
-        raise RefusedError(f"cues.limits are for {words}, got cues.names of {given}, which have none")
+    for part, readers in READ_BY.items():
+        if getattr(config, part) != getattr(CuesConfig(), part) and not set(readers) & set(config.names):
+            words, given = (", ".join(cue.name for cue in names) for names in (readers, config.names))
+            raise RefusedError(f"cues.{part} are for {words}, got cues.names of {given}, which have none")
     if CueName["photometric_defocus"] in config.names:
         _check_two_images(config.two_images)
     if CueName["printed_defocus"] in config.names:
