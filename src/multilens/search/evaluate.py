@@ -33,7 +33,7 @@ def evaluate(problem: Problem, seed: int = 0) -> Design:
         A design with the status "as given".
 
     Raises:
-        ValueError: the place of a lens is unknown, or apertures overlap.
+        ValueError: the place of a lens is unknown, or apertures overlap where foci are to be found.
     """
     for index in unplaced(problem):
         raise ValueError(f"lens {index + 1} must have a place to be evaluated, got {problem.lenses[index].position}")
