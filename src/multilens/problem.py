@@ -170,8 +170,8 @@ class Problem:
     def terms(self, layout: Layout) -> Float[Tensor, "*batch m"]:
         """Give what a search minimises the largest of: the score, or the worst case depth by depth.
 
-        Where cues may fail it is that of their smooth errors, which are never less than those that are claimed; together, by
-        inverse variance, they can be: see docs/metrics.md.
+        Where cues may fail it is that of their smooth errors. Each is never less than what is claimed of it, yet may be less than
+        the guess that is claimed where nothing measures: see docs/search.md.
         """
         if self.has_closed_form:
             return self.score(layout).unsqueeze(-1)
