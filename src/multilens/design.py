@@ -6,11 +6,12 @@ from pathlib import Path
 from typing import Any
 
 from multilens.bounds.bound import Bound
+from multilens.bounds.record import bound_record, read_bound
 from multilens.certificate import Certificate, certify
 from multilens.convergence import Convergence
 from multilens.coverage import coverage_in_words
 from multilens.documents import document, document_content, read_text
-from multilens.fields import choice, number, record, text, whole_number
+from multilens.fields import choice, number, record
 from multilens.geometry.pairs import pair_distance, pair_indices
 from multilens.layout import Layout
 from multilens.layout_table import f_numbers, foci, layout_lines
@@ -223,7 +224,7 @@ class Design:
             "certificate": certificate_record(self.certificate),
             "origin": None if self.origin is None else origin_record(self.origin),
             "convergence": None if self.convergence is None else convergence_record(self.convergence),
-            "bound": None if self.bound is None else _bound_record(self.bound),
+            "bound": None if self.bound is None else bound_record(self.bound),
         }
         if self.tolerance is not None:
             content["tolerance"] = noun_record(self.tolerance)
@@ -255,7 +256,7 @@ class Design:
             certificate,
             None if fields["convergence"] is None else read_convergence(fields["convergence"], "convergence"),
             None if fields["origin"] is None else read_origin(fields["origin"], "origin"),
-            None if fields["bound"] is None else _read_bound(fields["bound"], "bound"),
+            None if fields["bound"] is None else read_bound(fields["bound"], "bound"),
             read_noun(Tolerance, fields["tolerance"], "tolerance") if "tolerance" in fields else None,
         )
         _refuse_unless_it_holds(design, fields)
@@ -314,18 +315,6 @@ def _units(problem: Question) -> dict[str, str]:
     units = {"length": "mm", "rmse": "mm", "time": "s"}
     metric = problem.metric
     return units if metric is None else units | {"score": metric.score_unit, "figure": metric.unit}
-
-
-def _bound_record(bound: Bound) -> dict[str, Any]:
-    return {"value": bound.value, "reason": bound.reason, "root": bound.root, "boxes": bound.boxes}
-
-
-def _read_bound(value: object, name: str) -> Bound:
-    """Read what `_bound_record` gives. The number is not proved anew: `lower_bound` does that, and takes a second or two."""
-    fields = record(value, name, ("value", "reason", "root", "boxes"))
-    proved, root = (None if fields[key] is None else number(fields[key], f"{name}.{key}") for key in ("value", "root"))
-    reason = text(fields["reason"], f"{name}.reason")
-    return Bound(proved, reason, root, whole_number(fields["boxes"], f"{name}.boxes"))
 
 
 def _refuse_unless_it_holds(design: Design, fields: dict[str, Any]) -> None:
