@@ -40,6 +40,11 @@ def test_an_unknown_key_is_refused():
         record({"gap": 1, "tiers": 1, "_target_": "numpy.load"}, "lens", ("gap", "tiers"))
 
 
+def test_a_record_without_keys_says_so():
+    with pytest.raises(ValueError, match=r"^metric must have the keys none, got the unknown key 'of'$"):
+        record({"of": 1}, "metric", ())
+
+
 def test_a_missing_key_is_refused():
     with pytest.raises(ValueError, match=r"^lens must have the keys gap, tiers, got none called tiers$"):
         record({"gap": 1}, "lens", ("gap", "tiers"))

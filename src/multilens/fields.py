@@ -23,7 +23,7 @@ def record(value: object, name: str, keys: Sequence[str], optional: Sequence[str
         raise ValueError(f"{name} must be a record with {', '.join(keys)}, got {_shown(value)}")
     for key in value:
         if key not in keys and key not in optional:
-            known = ", ".join([*keys, *optional])
+            known = ", ".join([*keys, *optional]) or "none"
             raise ValueError(f"{name} must have the keys {known}, got the unknown key {_shown(key)}")
     for key in keys:
         if key not in value:
