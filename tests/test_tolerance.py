@@ -19,8 +19,8 @@ def test_a_tolerance_in_words(tolerance: Tolerance, words: str):
     ("limits", "told"),
     [
         ({}, "tolerance must have mm, percent or both, got neither"),
-        ({"mm": 0}, "mm of a tolerance must be > 0 and finite, got 0"),
-        ({"percent": float("inf")}, "percent of a tolerance must be > 0 and finite, got inf"),
+        ({"mm": 0}, "mm must be > 0 and finite, got 0"),
+        ({"percent": float("inf")}, "percent must be > 0 and finite, got inf"),
     ],
 )
 def test_a_limit_out_of_its_range_is_refused(limits: dict[str, float], told: str):

@@ -48,6 +48,9 @@ ROUNDING = 1e-9
 OTHERS = 2**31 - 1
 """Seed of the devices on which a design for many devices is tried once it is found: the last there is."""
 
+TOUCHING = 1e-6
+"""mm; bodies that a search has brought so close are told to touch."""
+
 SAME = 1e-12
 """Largest relative difference between a stored score and the one that its layout has: a few roundings, no more."""
 
@@ -295,7 +298,8 @@ class Design:
         if self.bound is not None:
             facts["lower bound"] = self._bound_in_words(self.bound)
         closest = self.certificate.closest
-        facts["tightest clearance"] = f"{closest.room:.3g} mm, {closest.what}"
+        room = closest.room if closest.room >= TOUCHING else 0.0
+        facts["tightest clearance"] = f"{room:.3g} mm, {closest.what}"
         wide = max(map(len, facts))
         return "\n".join([*table, "", *(f"{name:<{wide}}  {fact}" for name, fact in facts.items())])
 

@@ -26,8 +26,8 @@ class Lens:
             slides along a line.
         field_of_view_deg: angle of the whole cone that the lens sees, from side to side, degrees, > 0 and < 180; None where it
             is unknown, which limits nothing.
-        near_focus: nearest depth that the lens can bring into focus, and that it is trusted to measure, mm, > 0 and no more than
-            the nearest of `focus`; None where it is unknown, which limits nothing.
+        near_focus: nearest depth that the lens can bring into focus, nearer than which no pair under limits measures with it, mm,
+            > 0 and no more than the nearest of `focus`; None where it is unknown, which limits nothing.
         sensor: what stands behind the lens; None where it is unknown, which is enough for every cue but the photometric ones.
 
     Raises:

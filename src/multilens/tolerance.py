@@ -24,7 +24,7 @@ class Tolerance:
             raise ValueError("tolerance must have mm, percent or both, got neither")
         for name, limit in (("mm", self.mm), ("percent", self.percent)):
             if limit is not None and not (isfinite(limit) and limit > 0):
-                raise ValueError(f"{name} of a tolerance must be > 0 and finite, got {limit:g}")
+                raise ValueError(f"{name} must be > 0 and finite, got {limit:g}")
 
     def __str__(self) -> str:
         parts = [] if self.mm is None else [f"{self.mm:g} mm"]

@@ -91,7 +91,7 @@ def test_a_figure_is_that_of_the_metric(capsys: pytest.CaptureFixture[str]):
         (["aperture", "rmse=2", "most=3"], "most is no option of least aperture, got most=3"),
         (["lenses", "rmse=2", "figure=2"], "least must have one goal, rmse, figure or tolerance, got several"),
         (["lenses", "rmse=2", "tolerance.mm=2"], "least must have one goal"),
-        (["lenses", "tolerance.mm=-2"], "tolerance: mm of a tolerance must be > 0 and finite, got -2"),
+        (["lenses", "tolerance.mm=-2"], "tolerance: mm must be > 0 and finite, got -2"),
         (["lenses", "rmse=2", "out="], "out must be one folder, as in out=runs/fewest, got none"),
         (["lenses", "rmse=2", "lenses.cuont=3"], "did you mean lenses.count?"),
         (["aperture", "rmse=2", *SMALL], "least aperture: lenses must have apertures to choose from"),

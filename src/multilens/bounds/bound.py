@@ -1,5 +1,6 @@
 """A number that no feasible layout of a question scores below."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from math import inf
 
@@ -11,8 +12,8 @@ from multilens.bounds.kinds import kinds_of, pairs_of
 from multilens.bounds.packing import Space
 from multilens.bounds.room import body_area, box_area
 from multilens.bounds.worst import Serving, least_worst
-from multilens.cues import LensDefocus, PairStereo
-from multilens.fusion import Best
+from multilens.cues import CUES, LensDefocus, PairStereo
+from multilens.fusion import FUSIONS, Best
 from multilens.problem import Problem
 from multilens.question import Question
 from multilens.robust import Robust
@@ -62,11 +63,11 @@ def lower_bound(problem: Question, boxes: int = 4000, target: float = inf) -> Bo
         return Bound(None, "no bound is known for many devices")
     if not isinstance(problem, Problem):
         return Bound(None, "no bound is known for a score of one's own")
-    strange = [type(cue).__name__ for cue in problem.cues if type(cue) not in (PairStereo, LensDefocus)]
+    strange = [cue for cue in problem.cues if type(cue) not in (PairStereo, LensDefocus)]
     if strange:
-        return Bound(None, f"no bound is known for the cue {strange[0]}")
+        return Bound(None, f"no bound is known for the cue {_name(strange[0], CUES)}")
     if not isinstance(problem.fusion, Best):
-        return Bound(None, f"no bound is known for the fusion {type(problem.fusion).__name__}")
+        return Bound(None, f"no bound is known for the fusion {_name(problem.fusion, FUSIONS)}")
     if problem.prior_error is not None:
         return Bound(None, "no bound is known where a guess stands in for what is not measured")
     kinds = kinds_of(problem)
@@ -120,3 +121,8 @@ def _depths(problem: Problem) -> Depths:
 def _round(problem: Problem) -> float | None:
     outline = problem.back.outline
     return outline.radius if outline.core.geom_type == "Point" else None
+
+
+def _name(thing: object, table: Mapping[str, type]) -> str:
+    """Give the word that a configuration has for it, or the name of a class of one's own."""
+    return next((word for word, kind in table.items() if type(thing) is kind), type(thing).__name__)
