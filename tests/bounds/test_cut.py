@@ -52,6 +52,12 @@ def test_a_lens_of_one_focus_saves_what_it_saves():
     assert most_saved(depths, worth, 1e4, (200.0, 200.0)) == pytest.approx(3.0 + 0.5)
 
 
+def test_a_focus_nearer_than_every_depth_saves_at_the_first_alone():
+    depths = Depths(np.array([100.0, 200.0, 300.0]), np.array([0.5, 0.25, 0.25]))
+    # At 100 mm from a focus at 50 mm the cost is 0.5 (100 * 50 / 4e3)^2 = 25/32; farther away it exceeds the worth.
+    assert most_saved(depths, np.array([1.0, 0.01, 0.01]), 4e3, (50.0, 50.0)) == pytest.approx(7 / 32)
+
+
 @given(st.integers(0, 2**31))
 def test_interpolated_savings_are_no_less_than_computed_ones(seed):
     random = np.random.default_rng(seed)

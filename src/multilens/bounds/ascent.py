@@ -125,8 +125,8 @@ def _value_and_gradient(
         value -= focus.count * float(of_node.max())
         share = np.exp((of_node - of_node.max()) / width)
         share *= focus.count / share.sum()
-        if grid.dense:
-            gradient -= share @ (saved > 0)
+        if grid.from_the_first:
+            gradient[: len(saved.T)] -= share @ (saved > 0)
         else:
             gradient -= np.bincount(grid.depth_index.ravel(), ((saved > 0) * share[:, None]).ravel(), len(worth))
     return value, gradient

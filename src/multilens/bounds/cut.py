@@ -65,13 +65,13 @@ class FocusGrid:
     def saved(self, worth: Float[np.ndarray, " z"], aperture: float) -> Float[np.ndarray, "f s"]:
         """Give what each node saves at each of its depths with an effective aperture a, max(v - c / a^2, 0), mm^2."""
         saved = self.cost * (-1 / aperture**2)
-        saved += worth if self.dense else worth[self.depth_index]
+        saved += worth[: saved.shape[1]] if self.from_the_first else worth[self.depth_index]
         np.maximum(saved, 0.0, out=saved)
         return saved
 
     @cached_property
-    def dense(self) -> bool:
-        """Whether every node's window holds every depth."""
+    def from_the_first(self) -> bool:
+        """Whether every node's window begins at the first depth, so that all are the same."""
         return bool((self.depth_index == np.arange(self.depth_index.shape[1])).all())
 
 
