@@ -14,7 +14,7 @@ test: .venv/development
 	$(BIN)/lint-imports
 	$(BIN)/pytest -n auto --dist loadgroup
 
-# Ten minutes: every study again, with its tables and figures.
+# Half an hour: every study again, with its tables and figures.
 studies: .venv/runtime
 	for study in experiments/*/run.py; do $(BIN)/python $$study || exit 1; done
 
