@@ -1,9 +1,6 @@
 """The study's result still holds: its law of the baseline, noisy images, what it needs, and its ranges found again."""
 
 import csv
-import sys
-from collections.abc import Iterator
-from importlib.util import module_from_spec, spec_from_file_location
 from math import exp, pi
 from pathlib import Path
 from types import ModuleType
@@ -13,21 +10,8 @@ import torch
 
 STUDY = Path(__file__).parent
 
-
-@pytest.fixture(scope="module")
-def study() -> Iterator[dict[str, ModuleType]]:
-    modules = {}
-    with pytest.MonkeyPatch.context() as patch:
-        for name in ("rangefinder", "needs"):
-            spec = spec_from_file_location(f"compact_rangefinder_{name}", STUDY / f"{name}.py")
-            assert spec is not None
-            assert spec.loader is not None
-            modules[name] = module_from_spec(spec)
-            # By its own name for what makes dataclasses, by the plain one for its neighbour.
-            patch.setitem(sys.modules, spec.name, modules[name])
-            patch.setitem(sys.modules, name, modules[name])
-            spec.loader.exec_module(modules[name])
-        yield modules
+MODULES = ("rangefinder", "needs")
+"""Of the study, in the order of their imports."""
 
 
 def table(name: str) -> list[dict[str, str]]:

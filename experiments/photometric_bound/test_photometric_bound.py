@@ -1,8 +1,6 @@
 """The study's result still holds: bounds against stored and fresh simulations, designs against each other."""
 
 import csv
-import sys
-from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from types import ModuleType
 
@@ -14,28 +12,18 @@ import multilens as ml
 STUDY = Path(__file__).parent
 RESULTS = STUDY / "results"
 
-
-def load(name: str) -> ModuleType:
-    spec = spec_from_file_location(f"photometric_bound_{name}", STUDY / f"{name}.py")
-    assert spec is not None
-    assert spec.loader is not None
-    module = module_from_spec(spec)
-    sys.modules[spec.name] = module
-    spec.loader.exec_module(module)
-    return module
+MODULES = ("simulate", "cases")
+"""Of the study, in the order of their imports."""
 
 
 @pytest.fixture(scope="module")
-def simulate() -> ModuleType:
-    return load("simulate")
+def simulate(study: dict[str, ModuleType]) -> ModuleType:
+    return study["simulate"]
 
 
 @pytest.fixture(scope="module")
-def cases(simulate: ModuleType) -> ModuleType:
-    with pytest.MonkeyPatch.context() as patch:
-        # Its own neighbour, by the name under which a script finds it.
-        patch.setitem(sys.modules, "simulate", simulate)
-        return load("cases")
+def cases(study: dict[str, ModuleType]) -> ModuleType:
+    return study["cases"]
 
 
 def table(name: str) -> list[dict[str, str]]:

@@ -1,9 +1,6 @@
 """The study's result still holds: part of it predicted again, numbers worked by hand, and the working range of the library."""
 
 import csv
-import sys
-from collections.abc import Iterator
-from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from types import ModuleType
 
@@ -14,24 +11,8 @@ import multilens as ml
 from multilens.working_range import working_range
 
 STUDY = Path(__file__).parent
-NEIGHBOURS = ("published", "settings", "systems", "predict")
-"""In the order of their imports."""
-
-
-@pytest.fixture(scope="module")
-def study() -> Iterator[dict[str, ModuleType]]:
-    modules = {}
-    with pytest.MonkeyPatch.context() as patch:
-        for name in NEIGHBOURS:
-            spec = spec_from_file_location(f"published_ranges_{name}", STUDY / f"{name}.py")
-            assert spec is not None
-            assert spec.loader is not None
-            modules[name] = module_from_spec(spec)
-            # By its own name for what makes dataclasses, by the plain one for its neighbours.
-            patch.setitem(sys.modules, spec.name, modules[name])
-            patch.setitem(sys.modules, name, modules[name])
-            spec.loader.exec_module(modules[name])
-        yield modules
+MODULES = ("published", "settings", "systems", "predict")
+"""Of the study, in the order of their imports."""
 
 
 def table(name: str) -> list[dict[str, str]]:

@@ -1,7 +1,6 @@
 """What sets the devices that are built and used apart from the one that was drawn."""
 
 from dataclasses import dataclass, field
-from math import isfinite
 
 import torch
 from jaxtyping import Float
@@ -11,6 +10,7 @@ from torch.quasirandom import SobolEngine
 from multilens.cues.drift import Drift
 from multilens.layout import Layout
 from multilens.optics.drift import refocused
+from multilens.ranges import refuse_unless_not_negative
 
 WITHIN = 1e-7
 """Share by which uniform numbers keep away from 0 and 1, whose normal numbers are infinite: 5 standard deviations remain."""
@@ -41,9 +41,7 @@ class Disturbance:
 
     def __post_init__(self) -> None:
         for name in ("shift", "focus_dioptre"):
-            value = getattr(self, name)
-            if not (isfinite(value) and value >= 0):
-                raise ValueError(f"{name} must be >= 0 and finite, got {value:g}")
+            refuse_unless_not_negative(name, getattr(self, name))
         if not 0 <= self.covered <= 1:
             raise ValueError(f"covered must be from 0 to 1, got {self.covered:g}")
 

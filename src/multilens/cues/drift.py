@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import isfinite
 
 import torch
 from jaxtyping import Float
@@ -13,6 +12,7 @@ from multilens.cues.thesis import NANOMETRE
 from multilens.layout import Layout
 from multilens.lens import Lens
 from multilens.optics.drift import direction_drift, focus_drift_error, pair_drift_error
+from multilens.ranges import refuse_unless_not_negative
 
 LEAST_INFORMATION = 1e-30
 """1/mm^2: an error of a billion kilometres."""
@@ -37,8 +37,7 @@ class Drift:
 
     def __post_init__(self) -> None:
         for name, value in vars(self).items():
-            if not (isfinite(value) and value >= 0):
-                raise ValueError(f"{name} must be >= 0 and finite, got {value:g}")
+            refuse_unless_not_negative(name, value)
 
     def pair_error(
         self, pair: tuple[Lens, Lens], baseline: Float[Tensor, "*batch"], depths: Float[Tensor, " z"]
