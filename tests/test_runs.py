@@ -1,6 +1,5 @@
 import csv
 import errno
-import json
 import os
 import sys
 from dataclasses import replace
@@ -17,7 +16,7 @@ from multilens.design import INFEASIBLE, Design
 from multilens.layout import Layout
 from multilens.lens import Lens
 from multilens.problem import Problem
-from multilens.runs import SweepRow, redraw, sweep_table, write_failure, write_run, write_sweep_table
+from multilens.runs import redraw, write_run
 
 TEXTS = {"config.yaml", "design.json", "layout.csv", "run.log", "sensitivity.csv"}
 PICTURES = {f"{name}.{kind}" for name in ("layout", "overview") for kind in ("svg", "png")}
@@ -83,7 +82,7 @@ def test_the_design_of_a_run_is_the_one_that_was_written(tmp_path, design, sketc
 
 def test_the_same_run_leaves_the_same_bytes(tmp_path, design, sketches):
     for name in ("one", "two"):
-        write_run(tmp_path / name, design, "seed: 0\n", "done\n", ["a=1"])
+        write_run(tmp_path / name, design, "seed: 0\n", "done\n")
     assert contents(tmp_path / "one") == contents(tmp_path / "two")
 
 
@@ -222,98 +221,6 @@ def test_redrawing_that_is_interrupted_keeps_the_old_pictures(tmp_path, design, 
         redraw(tmp_path / "run")
     assert contents(tmp_path / "run") == before
     assert names(tmp_path) == {"run"}
-
-
-def test_a_failure_leaves_its_reason(tmp_path):
-    write_failure(tmp_path / "3", "infeasible", "no room", "seed: 0\n", "sorry\n", ["lenses.count=9"])
-    assert names(tmp_path / "3") == {"failure.json", "config.yaml", "run.log", "overrides.json"}
-    assert json.loads((tmp_path / "3" / "failure.json").read_text()) == {"status": "infeasible", "reason": "no room"}
-
-
-def test_a_failure_on_a_full_disk_leaves_nothing(tmp_path, monkeypatch):
-    def fills_up(handle):
-        raise OSError(errno.ENOSPC, "No space left on device")
-
-    monkeypatch.setattr(os, "fsync", fills_up)
-    with pytest.raises(OSError, match="No space left"):
-        write_failure(tmp_path / "3", "infeasible", "no room", "", "")
-    assert not names(tmp_path)
-
-
-@pytest.fixture
-def sweep(tmp_path, design, sketches):
-    for job in (0, 10, 2):
-        write_run(tmp_path / str(job), design, "", "", [f"lenses.count={job}", "depth=room"])
-    write_failure(tmp_path / "3", "infeasible", "no room | at all", "", "", ["lenses.count=9", "gap=[1,2]"])
-    (tmp_path / "4").mkdir()
-    (tmp_path / "5").mkdir()
-    (tmp_path / "5" / "design.json").write_text("{")
-    (tmp_path / ".6.partial-0000").mkdir()
-    (tmp_path / "7").write_text("no folder")
-    return tmp_path
-
-
-def test_a_sweep_is_gathered_in_the_order_of_its_jobs(sweep):
-    rows = sweep_table(sweep)
-    assert [(row.job, row.status) for row in rows] == [
-        (0, "complete"),
-        (2, "complete"),
-        (3, "infeasible"),
-        (4, "unfinished"),
-        (5, "unreadable"),
-        (10, "complete"),
-    ]
-
-
-def test_a_row_holds_what_came_of_its_job(sweep, design):
-    found, failed = (sweep_table(sweep)[index] for index in (1, 2))
-    rmse = design.score**0.5
-    assert found == SweepRow(
-        2, ("lenses.count=2", "depth=room"), "complete", "", 2, "RMSE", rmse, "mm", design.score, rmse, 1.0, None, 50.0
-    )
-    assert failed == SweepRow(3, ("lenses.count=9", "gap=[1,2]"), "infeasible", "no room | at all")
-
-
-def test_the_table_of_a_sweep_has_a_column_for_every_key(sweep, design):
-    write_sweep_table(sweep)
-    with (sweep / "table.csv").open(newline="") as file:
-        rows = list(csv.DictReader(file))
-    assert list(rows[0]) == [
-        "job",
-        "lenses.count",
-        "depth",
-        "gap",
-        "lens_count",
-        "status",
-        "metric",
-        "figure",
-        "unit",
-        "score",
-        "rmse_mm",
-        "measured",
-        "gap_to_bound",
-        "longest_baseline_mm",
-        "reason",
-    ]
-    assert [row["lenses.count"] for row in rows] == ["0", "2", "9", "", "", "10"]
-    assert rows[2]["gap"] == "[1,2]"
-    assert float(rows[1]["score"]) == design.score
-    assert rows[4]["reason"].startswith(str(sweep / "5" / "design.json"))
-
-
-def test_the_table_to_read_is_a_table(sweep):
-    write_sweep_table(sweep)
-    head, rule, *rows = (sweep / "table.md").read_text().splitlines()
-    assert {line.replace(r"\|", "").count("|") for line in (head, rule, *rows)} == {16}
-    assert "no room \\| at all" in rows[2]
-
-
-@pytest.mark.parametrize("damage", ['{"status": "infeasible"}', "[" * 100_000, "[1]", "\x00"])
-def test_a_damaged_failure_does_not_keep_the_others_from_the_table(sweep, damage):
-    (sweep / "3" / "failure.json").write_text(damage)
-    rows = sweep_table(sweep)
-    assert [row.status for row in rows][1:3] == ["complete", "unreadable"]
-    assert "\n" not in rows[2].reason
 
 
 @pytest.fixture(scope="module")

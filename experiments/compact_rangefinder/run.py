@@ -11,8 +11,8 @@ from rangefinder import ALL_SIZES, DIFFERENTIAL, HALVES, OFFICE, WAYS, Rangefind
 
 from multilens.plot.figures import save_figures
 from multilens.plot.style import style
-from multilens.runs import csv_text, markdown_text
 from multilens.storage import write_whole
+from multilens.table_text import csv_text, markdown_text
 
 RESULTS = Path(__file__).parent / "results"
 TEXTURES = {"one size": OFFICE, "all sizes": ALL_SIZES}

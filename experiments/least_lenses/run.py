@@ -12,8 +12,8 @@ from questions import COUNTS, GOAL, counted, smallest_apertures, smallest_island
 from multilens.inverse.answer import Answer
 from multilens.plot.figures import save_figures
 from multilens.plot.style import style
-from multilens.runs import csv_text, markdown_text
 from multilens.storage import write_whole
+from multilens.table_text import csv_text, markdown_text
 
 RESULTS = Path(__file__).parent / "results"
 

@@ -11,8 +11,8 @@ from layouts import CASES, Case
 import multilens as ml
 from multilens.geometry.pairs import pair_distance
 from multilens.plot.figures import overview_figure, save_figures
-from multilens.runs import csv_text, markdown_text
 from multilens.storage import write_whole
+from multilens.table_text import csv_text, markdown_text
 
 RESULTS = Path(__file__).parent / "results"
 

@@ -25,8 +25,8 @@ from multilens.app import build
 from multilens.app.given import read_given
 from multilens.plot.figures import overview_figure, save_figures
 from multilens.plot.style import style
-from multilens.runs import csv_text, markdown_text
 from multilens.storage import write_whole
+from multilens.table_text import csv_text, markdown_text
 
 RESULTS = Path(__file__).parent / "results"
 DRAWS, SEED = 40_000, 0

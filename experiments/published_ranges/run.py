@@ -16,8 +16,8 @@ from torch import Tensor
 
 from multilens.plot.figures import save_figures
 from multilens.plot.style import style
-from multilens.runs import csv_text, markdown_text
 from multilens.storage import write_whole
+from multilens.table_text import csv_text, markdown_text
 
 RESULTS = Path(__file__).parent / "results"
 PITCH = {"d3s": 0.002, "oak_d": 0.003}

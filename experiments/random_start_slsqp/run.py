@@ -15,10 +15,10 @@ import multilens as ml
 from multilens.app.build import build_problem, typed
 from multilens.app.compose import config_folder
 from multilens.app.schema import register
-from multilens.runs import csv_text, markdown_text
 from multilens.search.legalise import legalise
 from multilens.search.threads import one_thread
 from multilens.storage import write_whole
+from multilens.table_text import csv_text, markdown_text
 
 RESULTS = Path(__file__).parent / "results"
 RUNS = 200

@@ -15,8 +15,8 @@ from photometric import photometric_rows
 import multilens as ml
 from multilens.plot.figures import overview_figure, save_figures
 from multilens.plot.style import FAINT, lens_colour, style
-from multilens.runs import csv_text, markdown_text
 from multilens.storage import write_whole
+from multilens.table_text import csv_text, markdown_text
 
 RESULTS = Path(__file__).parent / "results"
 

@@ -14,8 +14,8 @@ from matplotlib.figure import Figure
 import multilens as ml
 from multilens.plot.figures import overview_figure, save_figures
 from multilens.plot.style import lens_colour, style
-from multilens.runs import csv_text, markdown_text
 from multilens.storage import write_whole
+from multilens.table_text import csv_text, markdown_text
 
 RESULTS = Path(__file__).parent / "results"
 

@@ -13,8 +13,8 @@ import multilens as ml
 from multilens.bands import NOTHING, winner_bands
 from multilens.coverage import coverage_in_words
 from multilens.plot.figures import overview_figure, save_figures
-from multilens.runs import csv_text, markdown_text
 from multilens.storage import write_whole
+from multilens.table_text import csv_text, markdown_text
 
 RESULTS = Path(__file__).parent / "results"
 

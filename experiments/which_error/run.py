@@ -13,8 +13,8 @@ import multilens as ml
 from multilens.bands import dense_depths
 from multilens.plot.figures import save_figures
 from multilens.plot.style import LENS_COLOURS, style
-from multilens.runs import csv_text, markdown_text
 from multilens.storage import write_whole
+from multilens.table_text import csv_text, markdown_text
 
 RESULTS = Path(__file__).parent / "results"
 

@@ -115,7 +115,12 @@ def test_a_sweep_leaves_a_row_for_every_job(swept: Path):
 def test_a_job_that_found_nothing_leaves_its_reason_and_no_design(swept: Path):
     assert (swept / "0" / "design.json").is_file()
     assert not (swept / "1" / "design.json").exists()
-    assert json.loads((swept / "1" / "failure.json").read_text())["status"] == "infeasible"
+    assert json.loads((swept / "1" / "row.json").read_text())["row"]["status"] == "infeasible"
+
+
+def test_a_job_of_a_sweep_draws_no_pictures(swept: Path):
+    files = {path.name for path in (swept / "0").iterdir()}
+    assert files == {"config.yaml", "design.json", "layout.csv", "row.json", "run.log", "sensitivity.csv"}
 
 
 def test_version(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]):

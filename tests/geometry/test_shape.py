@@ -205,3 +205,23 @@ def test_a_shape_holds_its_shrunken_self_where_shapely_says_so(random_region, se
 )
 def test_plain_shapes_that_hold_their_shrunken_selves(shape: Shape, holds: bool):
     assert shape.holds_its_shrunken_self == holds
+
+
+@pytest.mark.parametrize(
+    ("given", "expected"),
+    [
+        (disc((3.0, 4.0), 2.0), 4 * pi),
+        (rectangle(30.0, 20.0), 600.0),
+        (rectangle(30.0, 20.0, corner=5.0), 600 - (4 - pi) * 25),
+        (Shape(LineString([(0, 0), (10, 0)]), 2.0), 40 + 4 * pi),
+        (Shape(Polygon([(0, 0), (9, 0), (9, 9), (0, 9)], [[(3, 3), (6, 3), (6, 6), (3, 6)]])), 72.0),
+    ],
+)
+def test_the_area_is_that_of_the_closed_form(given, expected):
+    assert given.area == pytest.approx(expected, rel=1e-12)
+
+
+def test_the_area_of_a_grown_corner_counts_no_point_twice():
+    # Two strips of 10 by 2 mm share a square; half a disc at each end, a quarter of one outside the bend.
+    bent = Shape(LineString([(0, 0), (10, 0), (10, 10)]), 1.0)
+    assert bent.area == pytest.approx(40 - 1 + pi + pi / 4, rel=1e-6)

@@ -87,9 +87,12 @@ def _estimates(config: DictConfig) -> str:
 
 def _run_sweep_job(config: DictConfig, folder: Path, overrides: list[str], log: list[str], visible: bool) -> None:
     from multilens.metrics import in_words
-    from multilens.runs import write_failure, write_run
+    from multilens.runs import write_design, write_words
+    from multilens.sweep_row import SweepRow
+    from multilens.sweeps.job import row_of, write_job
 
-    label = f"{_from_here(folder)}: {' '.join(overrides)}"
+    label, began, design, status, line = f"{_from_here(folder)}: {' '.join(overrides)}", monotonic(), None, "", ""
+    settings = tuple((key, value) for key, _, value in (line.partition("=") for line in overrides))
     try:
         design = _search(config, log, visible)
     except (NothingFoundError, RefusedError) as reason:
@@ -100,12 +103,20 @@ def _run_sweep_job(config: DictConfig, folder: Path, overrides: list[str], log: 
         # A job that fails by a fault of ours must not take the finished ones' table with it; its log has the whole story.
         status, line = "failed", one_line(f"{type(error).__name__}: {error}")
         log.append(traceback.format_exc())
+    if design is None:
+        log.append(line)
+        row, told = SweepRow(int(folder.name), settings, status, line), f"{status}: {line}"
     else:
-        write_run(folder, design, _text(config), _lines(log), overrides)
-        print(f"{label}: {in_words(design.problem.metric, design.score, 4)}", flush=True)
-        return
-    write_failure(folder, status, line, _text(config), _lines([*log, line]), overrides)
-    print(f"{label}: {status}: {line}", flush=True)
+        row = row_of(design, int(folder.name), settings, monotonic() - began)
+        told = in_words(design.problem.metric, design.score, 4)
+
+    def write_files(inside: Path) -> None:
+        if design is not None:
+            write_design(inside, design)
+        write_words(inside, _text(config), _lines(log))
+
+    write_job(folder, "", row, write_files)
+    print(f"{label}: {told}", flush=True)
 
 
 def _search(config: DictConfig, log: list[str], visible: bool) -> "Design":

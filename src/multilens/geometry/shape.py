@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from decimal import Decimal
 from functools import cached_property
+from math import pi
 
 import numpy as np
 import shapely
@@ -92,6 +93,19 @@ class Shape:
         """Least x, least y, largest x and largest y, mm, exact."""
         left, top, right, bottom = self.core.bounds
         return left - self.radius, top - self.radius, right + self.radius, bottom + self.radius
+
+    @cached_property
+    def area(self) -> float:
+        """Area, mm^2.
+
+        Exact where the core is convex, by Steiner's formula, area + perimeter radius + pi radius^2, or the radius 0;
+        elsewhere to 1e-6 of it, with arcs cut into edges.
+        """
+        if self.radius > 0 and self.core.convex_hull.area > self.core.area:
+            return self.polygon(segments_per_quarter=1024).area
+        start, end = np.moveaxis(self.segments, 1, 0)
+        perimeter = np.hypot(*(end - start).T).sum().item()
+        return self.core.area + perimeter * self.radius + pi * self.radius**2
 
     @property
     def middle(self) -> tuple[float, float]:
