@@ -46,6 +46,7 @@ if TYPE_CHECKING:
     from multilens.scene import Scene as Scene
     from multilens.score_problem import ScoreProblem as ScoreProblem
     from multilens.search.evaluate import evaluate as evaluate
+    from multilens.search.neighbours import carried_over as carried_over
     from multilens.search.solve import solve as solve
     from multilens.sensor import Sensor as Sensor
     from multilens.tolerance import Tolerance as Tolerance
@@ -81,6 +82,7 @@ _HOME = {
     "WorkingRange": "working_range",
     "WorstCase": "metrics",
     "area_penalty": "penalty",
+    "carried_over": "search.neighbours",
     "disc": "geometry.shape",
     "distance_penalty": "penalty",
     "evaluate": "search.evaluate",

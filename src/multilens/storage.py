@@ -27,6 +27,7 @@ class Origin:
         time_limit: s, or None.
         versions: of Python and the libraries.
         commit: of the source, with a "+" if it was changed since; None where unknown.
+        known: how many layouts it began with besides that were known.
     """
 
     seed: int
@@ -36,6 +37,7 @@ class Origin:
     time_limit: float | None
     versions: dict[str, str] = field(default_factory=dict)
     commit: str | None = None
+    known: int = 0
 
 
 def write_whole(path: Path, text: str) -> None:

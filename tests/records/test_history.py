@@ -21,6 +21,12 @@ def test_an_origin_comes_back():
     assert read_origin(through_json(origin_record(Origin(0, 1, 1, "p", None))), "origin") == Origin(0, 1, 1, "p", None)
 
 
+def test_what_was_known_is_told_where_there_was_any():
+    origin = Origin(0, 0, 0, "p", None, known=3)
+    assert read_origin(through_json(origin_record(origin)), "origin") == origin
+    assert "known" not in origin_record(Origin(0, 1, 1, "p", None))
+
+
 def test_a_history_is_kept_to_six_digits():
     scores = torch.tensor([[1.23456789e10, torch.nan], [-0.000123456789, torch.inf]], dtype=torch.float64)
     convergence = Convergence((0, 20), scores, (1, 0), (1 / 3, torch.nan))

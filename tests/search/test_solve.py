@@ -7,11 +7,17 @@ from typing import Any
 import jaxtyping
 import pytest
 import torch
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
 from threadpoolctl import threadpool_limits
 
 import multilens as ml
 from multilens.certificate import certify
+from multilens.search.legalise import legalise
+from multilens.search.limits import Limits
 from multilens.search.progress import Progress
+from multilens.search.tighten import tighten
+from multilens.search.variables import Variables
 
 
 @pytest.fixture(autouse=True)
@@ -314,7 +320,15 @@ def test_healthy_starts_decide_where_others_are_not() -> None:
 
 @pytest.mark.parametrize(
     ("name", "number"),
-    [("starts", 0), ("patience", -1), ("proof", -1), ("batch", 0), ("time_limit", 0.0), ("time_limit", float("nan"))],
+    [
+        ("starts", 0),
+        ("starts", -1),
+        ("patience", -1),
+        ("proof", -1),
+        ("batch", 0),
+        ("time_limit", 0.0),
+        ("time_limit", float("nan")),
+    ],
 )
 def test_numbers_out_of_range_are_refused_by_name(crowded: ml.Problem, name: str, number: float) -> None:
     with pytest.raises(ValueError, match=f"{name} must be >"):
@@ -326,3 +340,100 @@ def test_the_design_knows_a_bound_below_it() -> None:
     assert design.bound is not None
     assert design.bound.value is not None
     assert 0 < design.bound.value <= design.score
+
+
+def anywhere(problem: ml.Problem, seed: int) -> ml.Layout:
+    """A layout whose every unknown is drawn at random, whether it is feasible or not."""
+    variables = Variables(problem)
+    draws = torch.rand(len(variables), generator=torch.Generator().manual_seed(seed), dtype=torch.float64)
+    return variables.layout(draws * variables.upper)
+
+
+@settings(max_examples=8)
+@given(st.integers(0, 10**6))
+def test_no_design_is_worse_than_a_feasible_layout_that_was_known(seed: int) -> None:
+    problem = small(ml.Back.rectangle(40, 30))
+    layout, certificate = legalise(problem, tighten(Limits(problem), anywhere(problem, seed)))
+    assume(certificate.feasible)
+    design = ml.solve(problem, starts=0, patience=0, proof=0, known=[layout])
+    assert design.score <= problem.score_over_depths(layout).item() * (1 + 1e-12)
+
+
+@settings(max_examples=4)
+@given(st.integers(0, 10**6))
+def test_a_known_layout_that_breaks_constraints_is_brought_near(seed: int) -> None:
+    problem = small(ml.Back.rectangle(40, 30))
+    outside = anywhere(problem, seed)
+    beyond = ml.Layout(outside.position + 10, outside.aperture_radius + 1, outside.focus * 2)
+    assert ml.solve(problem, starts=0, patience=0, proof=0, known=[beyond]).feasible
+
+
+def test_a_known_optimum_is_the_design_without_any_start() -> None:
+    # By stereo alone: both lenses in opposite corners, as narrow as they may be.
+    lens = ml.Lens(1.0, (1.0, 2.0))
+    problem = ml.Problem(ml.Back.rectangle(30, 40), [lens] * 2, [500.0], cues=[ml.PairStereo()])
+    best = ml.Layout([[1.0, 1.0], [29.0, 39.0]], [1.0, 1.0], [500.0, 500.0])
+    design = ml.solve(problem, starts=0, patience=0, proof=0, known=[best])
+    assert design.longest_baseline[0] == hypot(28, 38)
+    assert design.origin.known == 1
+
+
+def robust(problem: ml.Problem) -> ml.Robust:
+    return ml.Robust(problem, ml.Disturbance(shift=0.05), samples=4)
+
+
+@pytest.mark.parametrize(
+    "question",
+    [
+        small(),
+        replace(small(), cues=(ml.LimitedStereo(ml.PairLimits()), ml.LensDefocus())),
+        replace(small(), fusion=ml.InverseVariance()),
+        replace(small(), metric=ml.WorstCase()),
+        robust(small()),
+        packing(ml.Back.rectangle(10, 10), 3, 5.0),
+    ],
+    ids=["thesis", "limited", "fusion", "worst case", "robust", "score of one's own"],
+)
+def test_any_question_begins_from_what_is_known(question: ml.Problem | ml.Robust | ml.ScoreProblem) -> None:
+    found = ml.solve(question, starts=1, patience=0, proof=0)
+    again = ml.solve(question, starts=0, patience=0, proof=0, known=[found.layout])
+    assert again.score <= found.score
+    assert again.convergence is None
+
+
+def test_what_is_known_is_begun_from_besides_the_starts(crowded: ml.Problem) -> None:
+    without = ml.solve(crowded, starts=4, patience=0, proof=0)
+    besides = ml.solve(crowded, starts=4, patience=0, proof=0, known=[without.layout])
+    assert besides.score <= without.score
+    torch.testing.assert_close(besides.convergence.scores[:, 0], without.convergence.scores[:, 0], rtol=0.5, atol=0)
+    assert len(besides.convergence.scores) == 4
+
+
+def test_what_is_known_is_varied() -> None:
+    # Five circles, one beside the four in the corners instead of amid them: a local optimum that only a variation leaves.
+    problem = packing(ml.Back.rectangle(1, 1), 5, 0.5)
+    stuck = ml.solve(problem, starts=1, patience=0)
+    assert -stuck.score < 0.99 * (2**0.5 - 1) / 2
+    found = ml.solve(problem, starts=0, patience=3, known=[stuck.layout])
+    assert -found.score == pytest.approx((2**0.5 - 1) / 2, abs=1e-9)
+
+
+def test_the_same_known_layouts_give_the_same_design_to_the_bit(crowded: ml.Problem) -> None:
+    known = [ml.solve(crowded, starts=1, patience=0, proof=0, seed=seed).layout for seed in (0, 1)]
+    one, other = (ml.solve(crowded, starts=0, patience=1, proof=0, known=known) for _ in range(2))
+    assert one.to_json() == other.to_json()
+
+
+@pytest.mark.parametrize("count", [2, 4])
+def test_a_known_layout_of_other_lenses_is_refused(crowded: ml.Problem, count: int) -> None:
+    layout = ml.Layout([[5.0, 5.0]] * count, [1.0] * count, [[500.0, 600.0]] * count)
+    with pytest.raises(ValueError, match=r"known\[0\] must be one layout, its foci of shape \[3, 2\], got "):
+        ml.solve(crowded, known=[layout])
+
+
+def test_known_layouts_without_a_score_are_an_error() -> None:
+    problem = ml.ScoreProblem(
+        ml.Back.rectangle(10, 10), [ml.Lens(1.0, (0.5, 1.0))], lambda layout: (-layout.aperture_radius[..., 0]).sqrt()
+    )
+    with pytest.raises(RuntimeError, match="none of the 1 starts stayed healthy"):
+        ml.solve(problem, starts=0, known=[ml.Layout([[5.0, 5.0]], [0.5], [1.0])])

@@ -48,8 +48,8 @@ def read_convergence(value: object, name: str) -> Convergence:
 
 
 def origin_record(origin: Origin) -> Record:
-    """Give what made a design."""
-    return {
+    """Give what made a design; layouts that were known are told of where there were any."""
+    fields = {
         "seed": int(origin.seed),
         "starts": int(origin.starts),
         "patience": int(origin.patience),
@@ -58,11 +58,13 @@ def origin_record(origin: Origin) -> Record:
         "versions": dict(sorted(origin.versions.items())),
         "commit": origin.commit,
     }
+    return fields | {"known": int(origin.known)} if origin.known else fields
 
 
 def read_origin(value: object, name: str) -> Origin:
     """Read what `origin_record` gives."""
-    fields = record(value, name, ("seed", "starts", "patience", "penalty", "time_limit", "versions", "commit"))
+    keys = ("seed", "starts", "patience", "penalty", "time_limit", "versions", "commit")
+    fields = record(value, name, keys, optional=["known"])
     seed, starts, patience = (whole_number(fields[key], f"{name}.{key}") for key in ("seed", "starts", "patience"))
     time_limit, versions, commit = fields["time_limit"], fields["versions"], fields["commit"]
     if not isinstance(versions, dict):
@@ -75,6 +77,7 @@ def read_origin(value: object, name: str) -> Origin:
         None if time_limit is None else number(time_limit, f"{name}.time_limit"),
         {library: text(version, f"{name}.versions.{library:.40}") for library, version in versions.items()},
         None if commit is None else text(commit, f"{name}.commit"),
+        whole_number(fields["known"], f"{name}.known") if "known" in fields else 0,
     )
 
 

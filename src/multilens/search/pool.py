@@ -1,7 +1,7 @@
 """The best layouts so far: those that the next ones are varied from, and the one that would be claimed."""
 
 from dataclasses import dataclass, field
-from math import nan
+from math import isnan, nan
 
 import torch
 from torch import Tensor
@@ -34,7 +34,7 @@ class Candidate:
         if other is None:
             return True
         if self.certificate.feasible and other.certificate.feasible:
-            return self.score < other.score
+            return self.score < other.score or isnan(other.score)
         if self.certificate.feasible or other.certificate.feasible:
             return self.certificate.feasible
         return self.certificate.tightest.room > other.certificate.tightest.room

@@ -15,7 +15,7 @@ class Progress:
         stage: "starts" (fresh ones, a batch at a time), "variations" (of the best so far) or "polish" (the last digits).
         done: part of the stage that is done, 0 to 1.
         starts: how many fresh starts there have been so far.
-        alive: how many of them are healthy.
+        alive: how many of them, and of the layouts that were known before, are healthy.
         best: score of the best layout so far that is proved feasible; NaN while there is none.
         layout: that layout; None while there is none.
         seconds_left: estimate until the end, s.

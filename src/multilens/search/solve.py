@@ -1,6 +1,6 @@
-"""Solve a question: fresh starts first, then variations of the best, wave by wave; the best of all is polished and proved."""
+"""Solve a question: begin from what is known and afresh, vary the best wave by wave, polish and prove the best of all."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from math import inf, nan
@@ -79,12 +79,13 @@ def solve(
     device: str | torch.device = "cpu",
     dtype: torch.dtype = torch.float64,
     listener: Listener = lambda progress: None,
+    known: Sequence[Layout] = (),
 ) -> Design:
     """Find the layout that answers a question best.
 
     Args:
         problem: what is asked.
-        starts: how many fresh layouts to begin with, >= 1.
+        starts: how many fresh layouts to begin with, >= 1, or >= 0 where layouts are known.
         seed: of the starts and the variations; the same seed on the same machine gives the same design to the bit, unless
             time ran out.
         time_limit: after which the best so far is given, s; None waits to the end.
@@ -96,16 +97,18 @@ def solve(
         device: where the waves are computed; the polish and the proof run on the processor.
         dtype: in which the waves are computed; the polish is in float64.
         listener: told of the progress after every wave.
+        known: layouts of these lenses to begin with besides, such as `carried_over` gives. One that is feasible is never better
+            than the design that is found; one that is not is brought near.
 
     Returns:
         The best feasible design; or, with the status "infeasible" and a reason, the layout that came nearest to being so.
 
     Raises:
         ValueError: a number is out of its range.
-        RuntimeError: no start stayed healthy: every one met a score or a gradient that is not finite.
+        RuntimeError: no start stayed healthy: every one, known or fresh, met a score or a gradient that is not finite.
     """
     for name, number, least in (
-        ("starts", starts, 1),
+        ("starts", starts, 0 if known else 1),
         ("patience", patience, 0),
         ("proof", proof, 0),
         ("batch", batch, 1),
@@ -114,9 +117,10 @@ def solve(
             raise ValueError(f"{name} must be >= {least}, got {number}")
     if time_limit is not None and not time_limit > 0:
         raise ValueError(f"time_limit must be > 0 s, got {time_limit:g}")
+    _refuse_unless_of(problem, known)
     end = inf if time_limit is None else monotonic() + time_limit
     name = getattr(penalty, "__name__", repr(penalty))
-    origin = Origin(seed, starts, patience, name, time_limit, versions(), source_commit())
+    origin = Origin(seed, starts, patience, name, time_limit, versions(), source_commit(), len(known))
     reason = why_nothing_fits(problem)
     if reason is not None:
         variables = Variables(problem)
@@ -124,7 +128,12 @@ def solve(
         return Design(problem, layout, INFEASIBLE, reason, certificate, origin=origin)
     with one_thread():
         search = _Search(problem, Variables(problem, dtype, device), penalty, seed, end, listener)
-        search.open(starts, batch)
+        search.know(known, batch)
+        if starts:
+            search.open(starts, batch)
+        if not search.alive:
+            begun = starts + len(known)
+            raise RuntimeError(f"none of the {begun} starts stayed healthy: scores or gradients were not finite")
         search.vary(patience, batch)
         search.finish()
     best = search.best
@@ -137,6 +146,14 @@ def solve(
     searched = f" in {time_limit:g} s" if search.out_of_time else ""
     reason = f"no feasible layout found{searched}: at best {tightest.what} lacks {-tightest.room:.4g} mm"
     return Design(problem, best.layout, INFEASIBLE, reason, best.certificate, convergence, origin)
+
+
+def _refuse_unless_of(question: Question, known: Sequence[Layout]) -> None:
+    lenses, tiers = len(question.lenses), max(lens.tiers for lens in question.lenses)
+    for index, layout in enumerate(known):
+        if layout.aperture_radius.shape != (lenses,) or layout.focus.shape[-1] < tiers:
+            shape = list(layout.focus.shape)
+            raise ValueError(f"known[{index}] must be one layout, its foci of shape {[lenses, tiers]}, got {shape}")
 
 
 @dataclass
@@ -184,14 +201,35 @@ class _Search:
         return self.incumbent
 
     @property
-    def convergence(self) -> Convergence:
-        """How the fresh starts came down."""
+    def convergence(self) -> Convergence | None:
+        """How the fresh starts came down; None where there were none."""
+        if not self.tally.histories:
+            return None
         longest = max(history.shape[1] for history in self.tally.histories)
         rows = [
             torch.cat([history, history[:, -1:].expand(-1, longest - history.shape[1])], dim=-1)
             for history in self.tally.histories
         ]
         return Convergence(tuple(range(longest)), torch.cat(rows), tuple(self.tally.polished), tuple(self.tally.scores))
+
+    def know(self, known: Sequence[Layout], batch: int) -> None:
+        """Claim layouts that are known, polish the best of them as it is, and settle all."""
+        known = [layout for layout in known if self.question.score(layout).isfinite()]
+        self.alive += len(known)
+        for layout in known:
+            if not self._claim(layout.to(torch.float64)).certificate.feasible:
+                self._claim(tighten(self.limits, self.exact.layout(self.exact.vector(layout))))
+        if known:
+            self._polish(self.best.layout)
+        for few in (known[first : first + batch] for first in range(0, len(known), batch)):
+            if self._late():
+                break
+            share = torch.stack([self.variables.spread(self.variables.vector(layout)) for layout in few])
+            settled = self._settle(share, FROM_NEARBY, afresh=False)
+            self._take(settled, None)
+            # Settling may lead away from a layout that is as good as can be.
+            sight = self.seer.look(share, LAST)
+            self.elite.add(share, torch.where((sight.room >= 0).all(-1), sight.value, torch.inf))
 
     def open(self, starts: int, batch: int) -> None:
         """Settle fresh starts, a batch at a time."""
@@ -209,8 +247,6 @@ class _Search:
             self.alive += int(settled.value.isfinite().sum())
             self._take(settled, first)
             self._tell("starts", last / starts, last)
-        if not self.alive:
-            raise RuntimeError(f"none of the {starts} starts stayed healthy: scores or gradients were not finite")
 
     def vary(self, patience: int, batch: int) -> None:
         """Settle variations of the best until there is no progress for a while."""
@@ -264,15 +300,19 @@ class _Search:
         claimed = self._claim(tighten(self.limits, layout))
         if self._late():
             return
+        polished = self._polish(layout)
+        if first is not None and polished is not None:
+            self.tally.polished.append(first + at)
+            self.tally.scores.append(polished.score if polished.certificate.feasible else claimed.score)
+
+    def _polish(self, layout: Layout) -> Candidate | None:
+        """Claim what a rough polish makes of a layout, unless time runs out."""
         try:
             x = polish(self.rough, self.exact, self.exact.vector(layout), self.end, ROUGH)
         except OutOfTimeError:
             self.out_of_time = True
-            return
-        polished = self._claim(self.exact.layout(x))
-        if first is not None:
-            self.tally.polished.append(first + at)
-            self.tally.scores.append(polished.score if polished.certificate.feasible else claimed.score)
+            return None
+        return self._claim(self.exact.layout(x))
 
     def _claim(self, layout: Layout) -> Candidate:
         candidate = Candidate.of(self.question, layout)
