@@ -116,8 +116,22 @@ def test_lenses_of_other_tiers_carry_nothing_over(count: int) -> None:
     assert ml.carried_over(asked(count), in_a_row(asked(2, lens=other))) == ()
 
 
-def test_two_lenses_more_carry_nothing_over() -> None:
-    assert ml.carried_over(asked(4), in_a_row(asked(2))) == ()
+def test_several_lenses_are_added_clear_of_each_other() -> None:
+    problem = asked(5)
+    layouts = ml.carried_over(problem, in_a_row(asked(2)))
+    assert len(layouts) == MOST_PLACES
+    assert all(feasible(problem, layout) for layout in layouts)
+
+
+def test_two_lenses_less_carry_nothing_over() -> None:
+    assert ml.carried_over(asked(2), in_a_row(asked(4))) == ()
+
+
+def test_unlike_lenses_are_told_apart() -> None:
+    # A tele is added before two main cameras: these keep their places and apertures.
+    tele = replace(LENS, focal_length=15.0, aperture_radius=(2.0, 3.0))
+    layout = ml.carried_over(replace(asked(3), lenses=(tele, LENS, LENS)), in_a_row(asked(2)))[0]
+    assert layout.aperture_radius.tolist() == [2.0, 1.0, 1.1]
 
 
 def test_a_score_of_ones_own_carries_over() -> None:

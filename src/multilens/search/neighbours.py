@@ -1,6 +1,8 @@
 """What the design of a neighbouring question gives to begin with: its layout, if need be with a lens added or left out."""
 
+from bisect import bisect
 from collections.abc import Iterator, Sequence
+from typing import Any
 
 import torch
 from jaxtyping import Float
@@ -21,7 +23,7 @@ MOST_PLACES = 12
 def carried_over(problem: Question, design: Design) -> tuple[Layout, ...]:
     """Give layouts to begin with from a design of a neighbouring problem, for the `known` of `solve`.
 
-    Of as many lenses it is the design's own layout; of one more, the same with a lens of the smallest aperture added in several
+    Of as many lenses it is the design's own layout; of more, the same with those added at their smallest apertures, in several
     places; of one less, the same without each lens in turn. Where the outlines differ in extent, all of these come a second time
     stretched from one to the other. They may break constraints of the problem.
 
@@ -30,12 +32,12 @@ def carried_over(problem: Question, design: Design) -> tuple[Layout, ...]:
         design: of another problem, found or given.
 
     Returns:
-        One layout each; none where there is no room for a lens to add, where the numbers of lenses differ by more than one, or
-        where a lens has another number of tiers.
+        One layout each; none where there is no room for a lens to add, where the problem has fewer lenses by more than one, or
+        where lenses have other numbers of tiers.
     """
-    more = len(problem.lenses) - design.layout.count
-    make = {-1: _one_less, 0: _the_same, 1: _one_more}.get(more)
-    if make is None:
+    less = design.layout.count - len(problem.lenses)
+    make = _more if less < 0 else _the_same if less == 0 else _one_less
+    if less > 1:
         return ()
     tiers = max(lens.tiers for lens in problem.lenses)
     return tuple(
@@ -68,28 +70,44 @@ def _one_less(problem: Question, theirs: Sequence[Lens], layout: Layout) -> Iter
             yield layout.only(rest)
 
 
-def _one_more(problem: Question, theirs: Sequence[Lens], layout: Layout) -> Iterator[Layout]:
-    for index in _added(problem.lenses, theirs):
-        lens, (near, far) = problem.lenses[index], problem.focus_range[index]
-        rest = (*problem.lenses[:index], *problem.lenses[index + 1 :])
-        tiers = max(lens.tiers, layout.focus.shape[1])
-        # A lens of fewer tiers than others repeats its first focus.
-        wide = torch.cat([layout.focus, layout.focus[:, :1].expand(-1, tiers - layout.focus.shape[1])], dim=1)
-        focus = torch.full((1, tiers), (near * far) ** 0.5, dtype=torch.float64)
-        for place in _free_places(problem, lens, rest, layout):
-            yield Layout(
-                _inserted(layout.position, index, place.unsqueeze(0)),
-                _inserted(layout.aperture_radius, index, torch.tensor(lens.aperture_radius[:1], dtype=torch.float64)),
-                _inserted(wide, index, focus),
-            )
+def _more(problem: Question, theirs: Sequence[Lens], layout: Layout) -> Iterator[Layout]:
+    lenses = problem.lenses
+    standing = _partners(theirs, lenses) or _partners(_tiers(theirs), _tiers(lenses))
+    if not standing:
+        return
+    # A lens of fewer tiers than others repeats its first focus.
+    tiers = max(lens.tiers for lens in lenses)
+    wide = torch.cat([layout.focus, layout.focus[:, :1].expand(-1, tiers - layout.focus.shape[1])], dim=1)
+    grown = [Layout(layout.position, layout.aperture_radius, wide)]
+    for index in sorted(set(range(len(lenses))) - set(standing)):
+        others = [lenses[other] for other in standing]
+        at = bisect(standing, index)
+        # The first lens is tried in many places, and those after it in the roomiest that is left.
+        places = MOST_PLACES if len(standing) == len(theirs) else 1
+        grown = [
+            _with(problem, index, at, place, each)
+            for each in grown
+            for place in _free_places(problem, lenses[index], others, each)[:places]
+        ]
+        standing.insert(at, index)
+    yield from grown
 
 
-def _added(lenses: Sequence[Lens], theirs: Sequence[Lens]) -> list[int]:
-    """Give which lens may be the one that they lack: the last of each kind without which the others are theirs, or like them."""
-    kinds = {lens: index for index, lens in enumerate(lenses)}.values()
-    rests = {index: (*lenses[:index], *lenses[index + 1 :]) for index in kinds}
-    same = [index for index, rest in rests.items() if rest == tuple(theirs)]
-    return same or [index for index, rest in rests.items() if _tiers(rest) == _tiers(theirs)]
+def _partners(theirs: Sequence[Any], ours: Sequence[Any]) -> list[int]:
+    """Give which of ours, in order, are theirs; none where not all of them are among ours."""
+    found: list[int] = []
+    for index, each in enumerate(ours):
+        if len(found) < len(theirs) and each == theirs[len(found)]:
+            found.append(index)
+    return found if len(found) == len(theirs) else []
+
+
+def _with(problem: Question, index: int, at: int, place: Float[Tensor, " 2"], layout: Layout) -> Layout:
+    """Give a layout with one of the problem's lenses inserted, at its smallest aperture and a middling focus."""
+    least, (near, far) = problem.lenses[index].aperture_radius[0], problem.focus_range[index]
+    added = (place, layout.aperture_radius.new_tensor(least), torch.full_like(layout.focus[0], (near * far) ** 0.5))
+    parts = (layout.position, layout.aperture_radius, layout.focus)
+    return Layout(*(torch.cat([p[:at], one.unsqueeze(0), p[at:]]) for p, one in zip(parts, added, strict=True)))
 
 
 def _free_places(problem: Question, lens: Lens, others: Sequence[Lens], layout: Layout) -> list[Tensor]:
@@ -116,10 +134,6 @@ def _far_apart(places: Float[Tensor, "p 2"], room: Float[Tensor, " p"]) -> list[
         distance = distance.minimum((places - places[chosen[-1]]).norm(dim=-1))
         chosen.append(int(distance.argmax()))
     return [places[index] for index in dict.fromkeys(chosen)]
-
-
-def _inserted(numbers: Tensor, index: int, one: Tensor) -> Tensor:
-    return torch.cat([numbers[:index], one, numbers[index:]])
 
 
 def _tiers(lenses: Sequence[Lens]) -> list[int]:

@@ -88,7 +88,7 @@ def refuse_damaged(folder: Path, sealed: Sealed) -> None:
             raise ValueError(f"{name} was altered")
 
 
-def row_of(design: "Design", job: int, settings: tuple[tuple[str, str], ...], time: float) -> SweepRow:
+def row_of(design: "Design", job: int, settings: tuple[tuple[str, str], ...], time: float | None) -> SweepRow:
     """Give the row of a job that found a design.
 
     Args:

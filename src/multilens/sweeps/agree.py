@@ -1,0 +1,151 @@
+"""Designs of a sweep that agree: each job begins from its neighbours' layouts until that makes none better."""
+
+import json
+from collections import Counter
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+
+from multilens.certificate import certify
+from multilens.design import Design
+from multilens.question import Question
+from multilens.records import problem_record
+from multilens.search.neighbours import carried_over
+from multilens.search.solve import solve
+
+Settings = Sequence[tuple[str, str]]
+Listener = Callable[[int, int], None]
+
+PROGRESS = 1e-6
+"""Part of a score by which a layout must be better to take the place of another: less is a matter of rounding."""
+
+MOST_PASSES = 20
+"""Through all jobs. A pass carries what is good from one end of the sweep to the other; few are needed."""
+
+
+def agree(
+    own: Mapping[int, Design], settings: Mapping[int, Settings], listener: Listener = lambda turn, job: None
+) -> dict[int, Design]:
+    """Give every job the best design that it, or its neighbours' layouts, lead to.
+
+    Passes go up and down through the jobs by their numbers. In each a job begins from the layouts that neighbours have come to
+    since it last looked, whole, with lenses added or left out, and keeps its own unless it finds a better one. The outcome
+    depends on nothing but what is given: not on who computed it, nor in which order.
+
+    Args:
+        own: what each job's own search found, feasible, by its number.
+        settings: the swept keys and their values of every job, also of those that found nothing.
+        listener: told of the pass, from 1, and the job that is looked at.
+
+    Returns:
+        A design for each of the same jobs, never worse than its own.
+    """
+    near = unlike_neighbours(own, settings)
+    now, seen = dict(own), {}
+    for turn in range(1, MOST_PASSES + 1):
+        before = dict(now)
+        for job in sorted(own, reverse=turn % 2 == 0):
+            news = [other for other in near[job] if seen.get((job, other)) is not now[other]]
+            seen |= {(job, other): now[other] for other in news}
+            if news:
+                listener(turn, job)
+                now[job] = _begun_from(now[job], [now[other] for other in news])
+        if all(now[job] is before[job] for job in own):
+            break
+    return now
+
+
+def unlike_neighbours(own: Mapping[int, Design], settings: Mapping[int, Settings]) -> dict[int, list[int]]:
+    """Give for each job that found something those of its neighbours that did, and that were asked another question.
+
+    Jobs that differ in a seed or in the effort alone are there to be compared: they stay as their searches left them.
+    """
+    asked = {job: _as_text(design.problem) for job, design in own.items()}
+    return {
+        job: [other for other in others if other in own and asked[other] != asked[job]]
+        for job, others in neighbours(settings).items()
+        if job in own
+    }
+
+
+def neighbours(settings: Mapping[int, Settings]) -> dict[int, list[int]]:
+    """Give for each job those that differ from it in one key, by values next to each other.
+
+    Numbers are next to each other by their size, words by the order in which the sweep first names them.
+    """
+    rows = {job: [value for _, value in settings[job]] for job in sorted(settings)}
+    ranks = [
+        {value: rank for rank, value in enumerate(_ordered(column))} for column in zip(*rows.values(), strict=True)
+    ]
+    places = {job: tuple(rank[value] for rank, value in zip(ranks, row, strict=True)) for job, row in rows.items()}
+    at = {place: job for job, place in places.items()}
+    return {
+        job: [
+            at[beside]
+            for axis in range(len(place))
+            for step in (-1, 1)
+            if (beside := (*place[:axis], place[axis] + step, *place[axis + 1 :])) in at
+        ]
+        for job, place in places.items()
+    }
+
+
+def why_worse(design: Design, others: Mapping[int, Design]) -> str:
+    """Say why a design scores worse than that of a neighbour with fewer of its lenses; nothing where it does not.
+
+    Args:
+        design: of a job, once all agree.
+        others: of its neighbours, by their numbers.
+    """
+    better = [job for job, other in others.items() if _is_fewer(other, design) and _is_better(other, design)]
+    if not better:
+        return ""
+    best = min(better, key=lambda job: others[job].score)
+    problem, layouts = design.problem, carried_over(design.problem, others[best])
+    if not layouts:
+        reason = "beside its lenses there is no room for another body"
+    elif not any(
+        certify(problem.back, problem.lenses, problem.focus_range, layout, problem.gap).feasible for layout in layouts
+    ):
+        reason = "another body takes room that its lenses need"
+    else:
+        reason = "a lens added to it makes the score worse"
+    return f"worse than job {best} with fewer lenses: {reason}"
+
+
+def _begun_from(design: Design, others: Sequence[Design]) -> Design:
+    """Give the design, or a better one that a search from what others have come to leads to."""
+    carried = [layout for other in others for layout in carried_over(design.problem, other)]
+    if not carried:
+        return design
+    found = solve(design.problem, starts=0, patience=0, proof=0, known=[design.layout, *carried])
+    if not _is_better(found, design):
+        return design
+    # The bound is the problem's, and its own search's history stays its own.
+    origin = None if design.origin is None else replace(design.origin, known=len(carried))
+    return replace(design, layout=found.layout, certificate=found.certificate, origin=origin)
+
+
+def _is_better(one: Design, other: Design) -> bool:
+    return one.score < other.score - PROGRESS * abs(other.score)
+
+
+def _is_fewer(one: Design, other: Design) -> bool:
+    """Whether a design has some of the other's lenses and no more, and its score reads the same."""
+    few, many = Counter(one.problem.lenses), Counter(other.problem.lenses)
+    return few < many and one.problem.metric == other.problem.metric
+
+
+def _ordered(values: Sequence[str]) -> list[str]:
+    named = list(dict.fromkeys(values))
+    try:
+        return sorted(named, key=float)
+    except ValueError:
+        return named
+
+
+def _as_text(question: Question) -> str:
+    try:
+        return json.dumps(problem_record(question))
+    except TypeError:
+        # A score or a cue of one's own is like no other.
+        return str(id(question))
