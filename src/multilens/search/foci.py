@@ -8,6 +8,7 @@ from multilens.cues import LensDefocus
 from multilens.problem import Problem
 from multilens.question import Question
 from multilens.robust import as_drawn
+from multilens.search.dealing import Dealing
 from multilens.search.piercing import Piercing
 from multilens.search.refocus import refocus
 from multilens.search.stretches import Stretches
@@ -35,8 +36,11 @@ class Foci:
         device = variables.low.device
         self.columns = variables.free[variables.free >= variables.focus_start]
         self.stretches: Stretches | Piercing | None = None
+        self.dealing: Dealing | None = None
         if isinstance(drawn := self.question, Problem) and len(self.columns) and _is_shared_out(drawn):
             self.closed_form = drawn.closed_form(device)
+            if drawn.metric.is_mean:
+                self.dealing = Dealing(drawn.depths.numpy(), drawn.score_weights.numpy())
             kind = Stretches if drawn.metric.is_mean else Piercing
             self.stretches = kind(drawn.depths.to(device), drawn.score_weights.to(device))
 
@@ -71,6 +75,8 @@ class Foci:
         own = share[self.columns].argsort().argsort().unsqueeze(0)
         orders = torch.cat([own, self._any_order(DEALT)])
         dealt = self._shared_out(share.expand(1 + DEALT, -1), orders)
+        if self.dealing is not None:
+            dealt = torch.cat([dealt, self._dealt(share).unsqueeze(0)])
         tried = torch.cat([share.unsqueeze(0), dealt, self._one_by_one(dealt, afresh=False)])
         with torch.no_grad():
             return tried[self._minimised(tried).argmin()]
@@ -91,6 +97,17 @@ class Foci:
     def _any_order(self, count: int) -> Tensor:
         order = torch.rand(count, len(self.columns), generator=self.generator).argsort(-1)
         return order.to(self.columns.device)
+
+    def _dealt(self, share: Float[Tensor, " v"]) -> Float[Tensor, " v"]:
+        """Give one layout with the best foci for its apertures and its longest baseline."""
+        assert self.dealing is not None
+        gain, slope = self.closed_form.gain_and_slope(self.variables.layout_of(share))
+        near, far = self.variables.low[self.variables.focus_start :], self.variables.high[self.variables.focus_start :]
+        foci = self.dealing.best_foci(gain.item(), *(each.cpu().double().numpy() for each in (slope, near, far)))
+        at = (torch.from_numpy(foci).to(near) / near).log() / (far / near).log()
+        share = share.clone()
+        share[self.columns] = at[self.columns - self.variables.focus_start].clamp(0, 1)
+        return share
 
     def _shared_out(self, share: Tensor, order: Tensor) -> Tensor:
         """Give the layouts with the best foci for as many apertures of their mean width, dealt out in an order."""
