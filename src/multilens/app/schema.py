@@ -253,6 +253,17 @@ class SearchConfig:
 
 
 @dataclass
+class SweepConfig:
+    """How the jobs of a sweep go together.
+
+    Args:
+        agree: whether each is tried from its neighbours' layouts once all are done.
+    """
+
+    agree: bool = True
+
+
+@dataclass
 class Config:
     """Everything that a run is made from.
 
@@ -270,6 +281,7 @@ class Config:
         tolerance: within which the design's working range is told.
         penalty: for room that is not there.
         search: how long and how widely.
+        sweep: how its jobs go together, where it is one.
     """
 
     name: str = MISSING
@@ -285,6 +297,7 @@ class Config:
     tolerance: ToleranceConfig = field(default_factory=ToleranceConfig)
     penalty: PenaltyConfig = field(default_factory=PenaltyConfig)
     search: SearchConfig = field(default_factory=SearchConfig)
+    sweep: SweepConfig = field(default_factory=SweepConfig)
 
 
 def register() -> None:

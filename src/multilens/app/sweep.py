@@ -7,7 +7,8 @@ from typing import Any
 from hydra.experimental.callback import Callback
 from omegaconf import DictConfig
 
-from multilens.app.ending import NOTHING_FOUND
+from multilens.app.agreeing import let_neighbours_agree
+from multilens.app.ending import NOTHING_FOUND, SYSTEM_FAILED
 from multilens.sweep_row import Cell
 
 
@@ -15,18 +16,21 @@ class SweepTable(Callback):
     """Writes and prints the table of a sweep when its last job has ended; Hydra calls it once, where the sweep was started."""
 
     def on_multirun_end(self, config: DictConfig, **kwargs: Any) -> None:
-        """Write the table of the jobs' folders and print it.
+        """Let neighbours agree, write the table of the jobs' folders and print it.
 
         Raises:
-            SystemExit: a job found nothing, code 3.
+            SystemExit: a job found nothing, code 3, or the jobs could not agree, code 1.
         """
         from multilens.sweep_row import cells
         from multilens.sweeps.table import CSV, without_empty_columns, write_tables
 
         folder = Path(config.hydra.sweep.dir)
+        agreed = not config.sweep.agree or let_neighbours_agree(folder)
         rows = write_tables(folder)
         print(aligned(without_empty_columns(cells(rows))))
         print(folder / CSV)
+        if not agreed:
+            raise SystemExit(SYSTEM_FAILED)
         if any(row.score is None for row in rows):
             raise SystemExit(NOTHING_FOUND)
 

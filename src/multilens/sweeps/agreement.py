@@ -1,6 +1,6 @@
 """The agreement of a sweep's jobs in its folder: what a job's own search found stays beside what its neighbours led to.
 
-agreement.json   at the top: what has agreed, and which jobs became better
+agreement.json   at the top: a checksum of what has agreed, and the two scores of each job that became better, alone and agreed
 alone.json       in a job's folder: the design that its own search found, where design.json holds a better one
 
 All that changes is first written beside the jobs, whole, and then moved into their folders: whoever comes after an interruption
@@ -31,8 +31,8 @@ MOVING = "agreement"
 SCHEMA, SCHEMA_VERSION = "multilens.agreement", 1
 
 
-def agree_in(folder: Path, listener: Listener = lambda turn, job: None) -> None:
-    """Let the jobs of a sweep agree, and replace the designs that became better, with their rows.
+def agree_in(folder: Path, listener: Listener = lambda turn, job: None) -> tuple[int, ...]:
+    """Let the jobs of a sweep agree, replace the designs that became better, with their rows, and give these jobs.
 
     Args:
         folder: of the sweep.
@@ -48,21 +48,23 @@ def agree_in(folder: Path, listener: Listener = lambda turn, job: None) -> None:
     jobs = {row.job: read_job(folder / str(row.job)) for row in rows if row.score is not None}
     inputs = _checksum(jobs, settings)
     if inputs == _agreed_before(folder):
-        return
+        return tuple(job for job, sealed in jobs.items() if ALONE in sealed.checksums)
     own = {job: Design.load(folder / str(job) / _own_file(sealed)) for job, sealed in jobs.items()}
     now = agree(own, settings, listener)
     near = unlike_neighbours(own, settings)
+    better = tuple(job for job in own if now[job] is not own[job])
     with folder_written_whole(folder / MOVING) as inside:
         for job, design in now.items():
-            sealed, better = jobs[job], design is not own[job]
+            sealed = jobs[job]
             note = why_worse(design, {other: now[other] for other in near[job]})
             row = replace(row_of(design, job, sealed.row.settings, sealed.row.time), note=note)
-            if row != sealed.row or better != (ALONE in sealed.checksums):
-                _write_again(inside / str(job), folder / str(job), sealed, row, design, better)
-        better = {str(job): [own[job].score, now[job].score] for job in own if now[job] is not own[job]}
-        content = document(SCHEMA, SCHEMA_VERSION, {"inputs": inputs, "score_alone_and_agreed": better})
-        (inside / MARKER).write_text(content, encoding="utf-8", newline="\n")
+            if row != sealed.row or (job in better) != (ALONE in sealed.checksums):
+                _write_again(inside / str(job), folder / str(job), sealed, row, design, job in better)
+        content = {"inputs": inputs, "scores": {str(job): [own[job].score, now[job].score] for job in better}}
+        marker = document(SCHEMA, SCHEMA_VERSION, content)
+        (inside / MARKER).write_text(marker, encoding="utf-8", newline="\n")
     end_moving(folder)
+    return better
 
 
 def end_moving(folder: Path) -> None:
@@ -118,6 +120,6 @@ def _agreed_before(folder: Path) -> str | None:
         return None
     try:
         content = document_content(read_text(folder / MARKER), SCHEMA, SCHEMA_VERSION)
-        return text(record(content, MARKER, ("inputs", "score_alone_and_agreed"))["inputs"], "inputs")
+        return text(record(content, MARKER, ("inputs", "scores"))["inputs"], "inputs")
     except ValueError:
         return None
