@@ -15,10 +15,10 @@ from unittest.mock import patch
 import multilens as ml
 from benchmark.best_known import load
 from benchmark.problems import CASES, Case
-from multilens.runs import markdown_text
 from multilens.search.foci import Foci
 from multilens.search.progress import Progress
 from multilens.storage import write_whole
+from multilens.table_text import markdown_text
 
 RESULTS = Path(__file__).parent / "results" / "ablation.md"
 

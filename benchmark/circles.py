@@ -9,8 +9,8 @@ from time import monotonic
 from typing import Any
 
 import multilens as ml
-from multilens.runs import csv_text, markdown_text
 from multilens.storage import write_whole
+from multilens.table_text import csv_text, markdown_text
 
 COUNTS = range(2, 18)
 

@@ -10,7 +10,7 @@ from benchmark.best_known import Entry
 from benchmark.measures import CLOSE, VERY_CLOSE, Run, best_at, excess, final, median_of, time_to, times_shorter
 from benchmark.methods import OURS, PEERS, RIVAL
 from benchmark.problems import Case
-from multilens.runs import markdown_text
+from multilens.table_text import markdown_text
 
 TIMES = (1.0, 3.0, 10.0)
 """s; at which the best score is shown."""

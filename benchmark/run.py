@@ -24,8 +24,8 @@ from benchmark.report import Bound, Results, aimed_ratio, summary, table
 from benchmark.speed import speed_table
 from multilens.plot.figures import save_figures
 from multilens.plot.style import style
-from multilens.runs import csv_text, markdown_text
 from multilens.storage import write_whole
+from multilens.table_text import csv_text, markdown_text
 
 LIMIT, QUICK_LIMIT = 10.0, 3.0
 """s, of every run, at least."""
