@@ -2,7 +2,7 @@
 PYTHON ?= python3
 BIN := .venv/bin
 
-.PHONY: demo test studies bench format clean
+.PHONY: demo test docs studies bench format clean
 
 demo: .venv/runtime
 	$(BIN)/multilens experiment=demo
@@ -13,6 +13,10 @@ test: .venv/development
 	$(BIN)/basedpyright
 	$(BIN)/lint-imports
 	$(BIN)/pytest -n auto --dist loadgroup
+
+# The documentation as a site, in site/; `mkdocs serve` shows it while you write.
+docs: .venv/development
+	$(BIN)/mkdocs build --strict
 
 # Half an hour: every study again, with its tables and figures.
 studies: .venv/runtime
@@ -27,7 +31,7 @@ format: .venv/development
 	$(BIN)/ruff check --fix .
 
 clean:
-	rm -rf .venv runs sweeps
+	rm -rf .venv runs sweeps site
 
 .venv/runtime: pyproject.toml constraints.txt
 	$(PYTHON) -m venv .venv
@@ -35,7 +39,7 @@ clean:
 	touch $@
 
 .venv/development: .venv/runtime
-	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable '.[dev]'
+	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable '.[dev,docs]'
 	touch $@
 
 .venv/benchmark: .venv/runtime
