@@ -91,6 +91,7 @@ def png(figure: Figure) -> bytes:
 
 
 def main() -> None:
+    """Draw them all, each into its file."""
     for draw in FIGURES:
         (IMAGES / f"{draw.__name__}.png").write_bytes(png(draw()))
         print(draw.__name__)

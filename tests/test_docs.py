@@ -21,6 +21,7 @@ from typing import Any, get_args, get_origin, get_type_hints
 import jaxtyping
 import pytest
 
+import multilens as ml
 from multilens.app.command import run_command
 from multilens.app.compose import config_folder
 from multilens.app.schema import Config, LensConfig, ShapeConfig
@@ -170,6 +171,21 @@ def test_every_link_leads_somewhere(page: Path):
 def test_the_index_lists_every_page():
     listed = set(re.findall(r"\]\((\w+\.md)\)", (ROOT / "docs/README.md").read_text(encoding="utf-8")))
     assert listed == {page.name for page in ROOT.glob("docs/*.md")} - {"README.md"}
+
+
+def test_the_index_lists_every_study():
+    listed = set(re.findall(r"\]\(\.\./experiments/(\w+)/\)", (ROOT / "docs/README.md").read_text(encoding="utf-8")))
+    assert listed == {readme.parent.name for readme in ROOT.glob("experiments/*/README.md")}
+
+
+def test_the_reference_has_every_public_name_and_formula():
+    told = {
+        page: set(re.findall(r"(?m)^::: multilens\.(.+)$", (ROOT / "docs" / page).read_text(encoding="utf-8")))
+        for page in ("reference.md", "formulae.md")
+    }
+    assert {name for name in told["reference.md"] if "." not in name} == set(dir(ml))
+    modules = (ROOT / "src/multilens/optics").glob("[a-z]*.py")
+    assert told["formulae.md"] == {f"optics.{path.stem}" for path in modules}
 
 
 def section(page: str, heading: str) -> str:
