@@ -5,6 +5,8 @@ A page is run from top to bottom in a folder of its own. A `yaml` block is writt
 
 To stay within a minute, a command that searches is run with the overrides in QUICK, unless the page sets them itself: so of its
 output the form is compared, not the numbers. Its pictures are drawn coarsely, and in a sweep not at all.
+
+A command for a cluster, with hydra/launcher=submitit_slurm in its first line, is run by tests/cluster/test_slurm.py.
 Shapes are not enforced here, where time counts: every other test does that.
 """
 
@@ -31,6 +33,8 @@ ROOT = Path(__file__).parents[1]
 PAGES = [ROOT / name for name in ("README.md", "CONTRIBUTING.md", "CHANGELOG.md")] + sorted(ROOT.glob("docs/*.md"))
 
 QUICK = {"search.starts": "4", "search.patience": "0", "search.proof": "1", "depth.count": "24"}
+
+CLUSTER = "hydra/launcher=submitit_slurm"
 
 BLOCK = re.compile(r"^```(\w*)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
 NUMBER = re.compile(r"-?\d+(\.\d+)?(e[+-]?\d+)?")
@@ -99,7 +103,11 @@ def commands(block: Block) -> list[Command]:
     if block.language not in ("sh", "console"):
         return []
     shown = block.language == "console"
-    starts = [i for i, (_, line) in enumerate(lines) if line.startswith("$ multilens " if shown else "multilens ")]
+    starts = [
+        i
+        for i, (_, line) in enumerate(lines)
+        if line.startswith("$ multilens " if shown else "multilens ") and CLUSTER not in line
+    ]
     found = []
     for start, end in pairwise([*starts, len(lines)]):
         number, line = lines[start]

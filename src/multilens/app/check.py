@@ -2,6 +2,7 @@
 
 from argparse import Namespace
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +16,7 @@ from omegaconf import DictConfig, OmegaConf
 from multilens.app import build
 from multilens.app.compose import CONFIG_NAME, config_loader, open_hydra
 from multilens.app.keys import is_known, no_such_option, unknown_key
+from multilens.app.launcher import refuse_foreign_commands, refuse_without_cluster
 from multilens.app.refusal import RefusedError, one_line
 from multilens.app.telling import told_in_one_line
 from multilens.app.yaml_limits import refuse_wild_folders
@@ -61,6 +63,7 @@ def check_command_line(arguments: Namespace) -> None:
                 )
             _refuse_used_folder("hydra.run.dir", first)
         else:
+            refuse_without_cluster(_launcher(first))
             _refuse_used_folder("hydra.sweep.dir", first)
             swept += _swept_in_files(first, loader)
         for line in _each_value(overrides, swept, loader):
@@ -145,7 +148,7 @@ def composed(config_name: str, lines: list[str]) -> DictConfig:
     """Compose a configuration, Hydra's own part with it.
 
     Raises:
-        RefusedError: Hydra's part would put files into the run folder, or have something imported or called.
+        RefusedError: Hydra's part would put files into the run folder, or have something imported, called or run.
     """
     config = compose(config_name, lines, return_hydra_config=True)
     if config.hydra.output_subdir is not None:
@@ -159,6 +162,7 @@ def composed(config_name: str, lines: list[str]) -> DictConfig:
     assert isinstance(own, dict)
     for part in LOGGING:
         _refuse_foreign_objects(f"hydra.{part}", own.get(part))
+    refuse_foreign_commands(_launcher(config), lines)
     return config
 
 
@@ -182,16 +186,27 @@ def _refuse_foreign_objects(key: str, node: Any) -> None:
         raise RefusedError(one_line(f"{key} must be plain text, {' or '.join(STREAMS)}, got {node}"))
 
 
-def _refuse_used_folder(key: str, config: DictConfig) -> None:
-    # Where a folder goes may be told in terms of Hydra's own configuration, as during a run.
+@contextmanager
+def _as_during_a_run(config: DictConfig) -> Iterator[None]:
+    """Let what is told in terms of Hydra's own configuration be known, such as where a folder goes."""
     before = HydraConfig.instance().cfg
     HydraConfig.instance().set_config(config)
     try:
+        yield
+    finally:
+        HydraConfig.instance().cfg = before
+
+
+def _launcher(config: DictConfig) -> Any:
+    with _as_during_a_run(config):
+        return OmegaConf.to_container(config.hydra.launcher, resolve=True)
+
+
+def _refuse_used_folder(key: str, config: DictConfig) -> None:
+    with _as_during_a_run(config):
         # The name is part of the folder's: it is looked at before the folder is.
         build.check(build.typed(config))
         folder = Path(str(OmegaConf.select(config, key)))
-    finally:
-        HydraConfig.instance().cfg = before
     if folder.is_dir() and any(folder.iterdir()):
         raise RefusedError(f"{key} must be a new or empty folder, {folder} holds something already")
     if folder.exists() and not folder.is_dir():

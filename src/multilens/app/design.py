@@ -29,6 +29,7 @@ def design_command(words: Sequence[str]) -> int:
     from hydra._internal.utils import get_args_parser
 
     from multilens.app.compose import CONFIG_NAME, VERSION_BASE, config_folder
+    from multilens.app.launcher import failures_told
     from multilens.app.run import run_job
     from multilens.app.schema import register
     from multilens.app.sweep import SweepTable
@@ -53,7 +54,7 @@ def design_command(words: Sequence[str]) -> int:
     options: dict[str, Any] = {"execution_whitelist": [ours]} if takes_list else {"version_base": VERSION_BASE}
     start = hydra.main(config_path=str(config_folder()), config_name=CONFIG_NAME, **options)(run_job)
     try:
-        with _hydra_raises(), _in_argv(words), told_in_one_line():
+        with _hydra_raises(), _in_argv(words), told_in_one_line(), failures_told():
             start()
     except SystemExit as left:
         return left.code if isinstance(left.code, int) else DONE if left.code is None else SYSTEM_FAILED

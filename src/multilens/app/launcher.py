@@ -1,0 +1,62 @@
+"""Launchers that hand jobs to a cluster: what they need, what a file must not have them run, and how they fail."""
+
+import shutil
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from typing import Any
+
+from multilens.app.refusal import RefusedError, one_line
+
+SETUP = "setup"
+"""Commands that a node runs before a job."""
+
+
+def refuse_foreign_commands(launcher: Mapping[str, Any], lines: Sequence[str]) -> None:
+    """Refuse what would have a shell run something, unless whoever starts the sweep has written it.
+
+    Args:
+        launcher: Hydra's part of the configuration, resolved.
+        lines: key=value, as they stand on the command line.
+
+    Raises:
+        RefusedError: commands stand in a file, or a value has several lines, each of which a shell would read.
+    """
+    if launcher.get(SETUP) and not any(line.startswith(f"hydra.launcher.{SETUP}=") for line in lines):
+        raise RefusedError(
+            f"hydra.launcher.{SETUP} runs commands: it must be given on the command line, got it in a file"
+        )
+    for name, value in launcher.items():
+        if name != SETUP and any("\n" in text for text in _texts(value)):
+            raise RefusedError(one_line(f"hydra.launcher.{name} must be on one line, got {value!r}"))
+
+
+def refuse_without_cluster(launcher: Mapping[str, Any]) -> None:
+    """Refuse jobs for Slurm where it cannot be reached."""
+    if launcher["_target_"].endswith(".SlurmLauncher") and shutil.which("srun") is None:
+        raise RefusedError(
+            "hydra/launcher=submitit_slurm must be started where Slurm's commands are, found no srun on the search path"
+        )
+
+
+@contextmanager
+def failures_told() -> Iterator[None]:
+    """Turn what submitit raises, of a job that was killed or that the cluster does not take, into an OSError of one line."""
+    try:
+        yield
+    except RuntimeError as error:
+        if not type(error).__module__.startswith("submitit."):
+            raise
+        lines = [line for line in str(error).splitlines() if line.strip("- ")]
+        raise OSError(one_line(f"{lines[0]}: {lines[-1]}" if lines else type(error).__name__)) from None
+
+
+def _texts(node: Any) -> Iterator[str]:
+    if isinstance(node, Mapping):
+        for name, child in node.items():
+            yield str(name)
+            yield from _texts(child)
+    elif isinstance(node, list | tuple):
+        for child in node:
+            yield from _texts(child)
+    else:
+        yield str(node)
