@@ -11,6 +11,8 @@ if TYPE_CHECKING:
     from multilens.back import Back as Back
     from multilens.bounds.bound import Bound as Bound
     from multilens.bounds.bound import lower_bound as lower_bound
+    from multilens.cad.export import export as export
+    from multilens.cad.read import read_back as read_back
     from multilens.cues import LensDefocus as LensDefocus
     from multilens.cues import LimitedStereo as LimitedStereo
     from multilens.cues import PairLimits as PairLimits
@@ -86,12 +88,14 @@ _HOME = {
     "disc": "geometry.shape",
     "distance_penalty": "penalty",
     "evaluate": "search.evaluate",
+    "export": "cad.export",
     "fewest_lenses": "inverse.least",
     "histogram_weights": "depths",
     "linear_depths": "depths",
     "log_depths": "depths",
     "lower_bound": "bounds.bound",
     "polygon": "geometry.shape",
+    "read_back": "cad.read",
     "rectangle": "geometry.shape",
     "smallest_aperture": "inverse.least",
     "smallest_back": "inverse.least",

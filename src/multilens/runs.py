@@ -11,7 +11,8 @@ run.log          what the run said
 import os
 from pathlib import Path
 
-from multilens.constraints import body_radius
+from multilens.cad.plan import plan_of
+from multilens.cad.write_csv import write_csv
 from multilens.design import Design
 from multilens.storage import folder_written_whole, scratch_folder
 from multilens.table_text import csv_text
@@ -44,7 +45,7 @@ def write_run(folder: Path, design: Design, config_text: str, log_text: str) -> 
 def write_design(folder: Path, design: Design) -> None:
     """Write the files that a design alone decides, save for the pictures, into a folder; raises what `write_run` raises."""
     _write(folder / DESIGN, design.to_json())
-    _write(folder / LAYOUT, layout_csv(design))
+    _write(folder / LAYOUT, write_csv(plan_of(design)))
     _write(folder / SENSITIVITY, csv_text(design.sensitivity().cells()))
 
 
@@ -70,35 +71,6 @@ def redraw(folder: Path) -> None:
         _draw(design, drawn)
         for picture in sorted(drawn.iterdir()):
             os.replace(picture, folder / picture.name)
-
-
-def layout_csv(design: Design) -> str:
-    """Give the layout as a table: a row for each lens, in the units that the head of each column names."""
-    head = (
-        "lens",
-        "x_mm",
-        "y_mm",
-        "aperture_radius_mm",
-        "f_number",
-        "focus_mm",
-        "body_radius_mm",
-        "focal_length_mm",
-    )
-    layout, lenses = design.layout, design.problem.lenses
-    columns = zip(
-        layout.position.tolist(),
-        layout.aperture_radius.tolist(),
-        design.f_numbers,
-        design.foci,
-        body_radius(layout, lenses).tolist(),
-        lenses,
-        strict=True,
-    )
-    rows = [
-        (i + 1, x, y, radius, f_number, ";".join(map(repr, foci)), body, float(lens.focal_length))
-        for i, ((x, y), radius, f_number, foci, body, lens) in enumerate(columns)
-    ]
-    return csv_text([head, *rows])
 
 
 def _write(path: Path, text: str) -> None:

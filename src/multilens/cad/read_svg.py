@@ -1,0 +1,211 @@
+"""SVG: shapes by group or id, transformed and scaled to millimetres; their geometry by svgelements."""
+
+from collections.abc import Iterator
+from math import ceil, isclose, isfinite, sqrt, tan
+from typing import Any
+from xml.etree.ElementTree import Element, fromstring
+from xml.parsers.expat import ExpatError, ParserCreate
+
+import numpy as np
+import svgelements
+from svgelements import Arc, Close, CubicBezier, Line, Matrix, Move, Path, QuadraticBezier
+
+from multilens.cad.curve import Curve, tidy
+from multilens.cad.drawing import Drawing, Part
+from multilens.cad.units import scale_of
+
+NAMESPACES = ("{http://www.w3.org/2000/svg}", "")
+LABEL = "{http://www.inkscape.org/namespaces/inkscape}label"
+CLEARANCE = "data-clearance"
+
+NUMBERS = ("x", "y", "width", "height", "rx", "ry", "cx", "cy", "r")
+ROUND = {"circle": svgelements.Circle, "ellipse": svgelements.Ellipse, "rect": svgelements.Rect}
+POINTED = {"polygon": svgelements.Polygon, "polyline": svgelements.Polyline}
+GROUPS = ("g", "a")
+ELSEWHERE = ("use", "svg", "switch", "line")
+"""Elements that draw others again or somewhere else, or a line: they bound nothing that is read, and must not be passed over."""
+
+PHYSICAL = {"mm": 1.0, "cm": 10.0, "in": 25.4, "pt": 25.4 / 72, "pc": 25.4 / 6, "Q": 0.25}
+"""mm; px is no length: programs differ in how large it is."""
+
+ALIKE = 1e-3
+"""Part of a scale by which those along x and y may differ: width and height are often rounded."""
+
+CIRCULAR = 1e-9
+"""Part of a radius by which both of an arc may differ."""
+
+MOST_ELEMENTS, DEEPEST = 20_000, 64
+
+
+def read_svg(text: str, units: str | None, tolerance: float) -> Drawing:
+    """Read the shapes of an SVG that are drawn, y downwards.
+
+    A shape can be asked for by the id or Inkscape's label of itself or of any group that it is in.
+
+    Args:
+        text: of the file.
+        units: that one user unit is, told by the user; None for files whose width and height are lengths.
+        tolerance: within which curves that are no arcs are cut into edges, mm.
+
+    Raises:
+        ValueError: it is no SVG, declares entities, is too deep, or the units are unknown.
+    """
+    root = _root(text)
+    factor = scale_of(units, _millimetres(root), "width, height and viewBox", "units=mm")
+    parts = _parts(root, Matrix(root.get("transform", "")), (), factor, tolerance)
+    return Drawing(tuple(parts), y_up=False)
+
+
+def _root(text: str) -> Element:
+    """Parse a text that declares nothing: a few entities can stand for gigabytes."""
+
+    def refuse(*declared: Any) -> None:
+        raise ValueError(f"SVG must not declare entities, got {declared[0]!r:.40}: save it as plain SVG")
+
+    depth = count = 0
+
+    def go_down(name: str, attributes: dict[str, str]) -> None:
+        nonlocal depth, count
+        depth, count = depth + 1, count + 1
+        if depth > DEEPEST or count > MOST_ELEMENTS:
+            raise ValueError(f"SVG must be at most {DEEPEST} deep and hold {MOST_ELEMENTS} elements, got more")
+
+    def go_up(name: str) -> None:
+        nonlocal depth
+        depth -= 1
+
+    parser = ParserCreate()
+    parser.EntityDeclHandler, parser.StartElementHandler, parser.EndElementHandler = refuse, go_down, go_up
+    try:
+        parser.Parse(text, True)
+    except ExpatError as error:
+        raise ValueError(f"SVG must be whole XML, got {error}") from None
+    root = fromstring(text)
+    if _kind(root) != "svg":
+        raise ValueError(f"SVG must begin with an element svg, got {root.tag!r:.40}")
+    return root
+
+
+def _kind(element: Element) -> str:
+    """Give the name of an element of SVG, and nothing for those of others."""
+    tag = str(element.tag)
+    return next(
+        (tag.removeprefix(space) for space in NAMESPACES if tag.startswith(space) and "}" not in tag[len(space) :]), ""
+    )
+
+
+def _millimetres(root: Element) -> float | None:
+    """Give the millimetres of a user unit; None where width and height are no lengths or nothing says how many units they are."""
+    lengths = [_length(root.get(name, "")) for name in ("width", "height")]
+    box = root.get("viewBox", "").replace(",", " ").split()
+    if len(box) != 4 or None in lengths:
+        return None
+    scales = [
+        length / _number("viewBox", size) for length, size in zip(lengths, box[2:], strict=True) if length is not None
+    ]
+    if not isclose(*scales, rel_tol=ALIKE):
+        raise ValueError(f"SVG must have one scale, got {scales[0]:g} mm along x and {scales[1]:g} mm along y per unit")
+    return min(scales)
+
+
+def _length(text: str) -> float | None:
+    unit = next((unit for unit in PHYSICAL if text.strip().endswith(unit)), None)
+    return None if unit is None else PHYSICAL[unit] * _number("width and height", text.strip().removesuffix(unit))
+
+
+def _number(name: str, text: str) -> float:
+    try:
+        number = float(text.strip().removesuffix("px"))
+    except ValueError:
+        number = float("nan")
+    if not isfinite(number) or (name == "viewBox" and number <= 0):
+        raise ValueError(f"{name} must be a plain finite number, got {text!r:.40}")
+    return number
+
+
+def _parts(element: Element, above: Matrix, layers: tuple[str, ...], factor: float, tolerance: float) -> Iterator[Part]:
+    for child in element:
+        kind = _kind(child)
+        names = [name for name in (child.get(LABEL), child.get("id")) if name]
+        if "none" in (child.get("display"), _style(child).get("display")):
+            continue
+        inside = (*layers, *dict.fromkeys(names))
+        try:
+            matrix = Matrix(child.get("transform", "")) * above
+        except (ValueError, IndexError, TypeError) as error:
+            raise ValueError(f"transform must be one, got {child.get('transform', '')!r:.40}: {error}") from None
+        if kind in GROUPS:
+            yield from _parts(child, matrix, inside, factor, tolerance)
+        elif kind in ELSEWHERE:
+            yield Part(
+                inside, fault=f"an element {kind} cannot be read: make it a path of its own, or put it in another group"
+            )
+        elif kind == "path" or kind in ROUND or kind in POINTED:
+            title = next((part.text for part in child if _kind(part) == "title" and part.text), "")
+            clearance = child.get(CLEARANCE)
+            said = None if clearance is None else factor * _number(CLEARANCE, clearance)
+            try:
+                yield Part(
+                    inside, _curves(_path(child, kind, matrix), factor, tolerance), title or (names or [""])[0], said
+                )
+            except ValueError as error:
+                yield Part(inside, fault=str(error))
+
+
+def _style(element: Element) -> dict[str, str]:
+    pairs = (rule.partition(":") for rule in element.get("style", "").split(";"))
+    return {name.strip(): value.strip() for name, _, value in pairs}
+
+
+def _path(element: Element, kind: str, matrix: Matrix) -> Path:
+    try:
+        if kind == "path":
+            shape: Any = Path(element.get("d", ""))
+        elif kind in POINTED:
+            shape = POINTED[kind](element.get("points", ""))
+        else:
+            shape = ROUND[kind](
+                **{name: _number(name, element.get(name, "0")) for name in NUMBERS if name in element.attrib}
+            )
+        return abs(Path(shape) * matrix)
+    except (ValueError, IndexError, TypeError, AttributeError, ZeroDivisionError) as error:
+        raise ValueError(f"a {kind} must be well formed, got {error or type(error).__name__}") from None
+
+
+def _curves(path: Path, factor: float, tolerance: float) -> tuple[Curve, ...]:
+    subpaths = [
+        [segment for segment in Path(subpath) if not isinstance(segment, Move)] for subpath in path.as_subpaths()
+    ]
+    return tuple(_curve(segments, factor, tolerance) for segments in subpaths if segments)
+
+
+def _curve(segments: list[Any], factor: float, tolerance: float) -> Curve:
+    points, bulges, exact = [], [], True
+    for segment in segments:
+        if isinstance(segment, Arc) and isclose(segment.rx, segment.ry, rel_tol=CIRCULAR):
+            # Halves: of nearly a whole circle the bulge would be without measure.
+            points += [segment.start, segment.point(0.5)]
+            bulges += [tan(segment.sweep / 8)] * 2
+        else:
+            count = 1 if isinstance(segment, Line | Close) else _edges(segment, tolerance / factor / 2)
+            exact = exact and count == 1
+            points += [segment.point(index / count) for index in range(count)]
+            bulges += [0.0] * count
+    ring = factor * np.array([(point.x, point.y) for point in [*points, segments[-1].end]])
+    apart = float(np.hypot(*(ring[-1] - ring[0])))
+    if not isinstance(segments[-1], Close) and not apart <= CIRCULAR * max(np.abs(ring).max(), 1.0):
+        raise ValueError(f"curve must be closed, got ends {apart:g} mm apart, at ({ring[0][0]:g}, {ring[0][1]:g}) mm")
+    return tidy(ring[:-1], np.array(bulges), exact)
+
+
+def _edges(segment: Any, sagitta: float) -> int:
+    """Give into how many edges a curve is cut: with n of them it is within max |second derivative| / (8 n^2) of each."""
+    if isinstance(segment, Arc):
+        bend = segment.sweep**2 * max(segment.rx, segment.ry)
+    elif isinstance(segment, QuadraticBezier):
+        bend = 2 * abs(segment.start - 2 * segment.control + segment.end)
+    else:
+        assert isinstance(segment, CubicBezier)
+        first, second = segment.control1, segment.control2
+        bend = 6 * max(abs(segment.start - 2 * first + second), abs(first - 2 * second + segment.end))
+    return max(2, ceil(sqrt(bend / (8 * sagitta)))) if isfinite(bend) else 2
