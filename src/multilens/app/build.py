@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from omegaconf import DictConfig, OmegaConf, open_dict
 
+from multilens.app.back_file import read_back_file
 from multilens.app.cues import build_cues, check_cues
 from multilens.app.estimates import refuse_stray_estimates
 from multilens.app.photometry import build_scene, build_sensor, refuse_unknown_sensors
@@ -23,6 +24,7 @@ from multilens.app.schema import (
     ShapeConfig,
     ShapeKind,
 )
+from multilens.app.schema_file import BackFileConfig
 from multilens.app.score import build_depths, build_fusion, build_metric, check_score
 from multilens.app.tolerance import build_tolerance
 from multilens.back import Back
@@ -96,9 +98,8 @@ def check(config: Config) -> None:
 
 
 def build_back(config: BackConfig) -> Back:
-    """Make the back, its keep-outs in the order of the configuration."""
-    with refused_at("back.outline"):
-        back = Back(_build_shape("back.outline", config.outline))
+    """Make the back, its keep-outs in the order of the file and the configuration."""
+    back = _build_outline(config)
     if len(config.keep_outs) > MOST_KEEP_OUTS:
         raise RefusedError(f"back.keep_outs must be at most {MOST_KEEP_OUTS}, got {len(config.keep_outs)}")
     for name, keep_out in config.keep_outs.items():
@@ -110,6 +111,22 @@ def build_back(config: BackConfig) -> Back:
         with refused_at(key):
             back = back.keep_out(name, _build_shape(f"{key}.shape", keep_out.shape), keep_out.clearance)
     return back
+
+
+def _build_outline(config: BackConfig) -> Back:
+    if config.file.path is not None:
+        if config.outline is not None:
+            raise RefusedError(
+                "back must have an outline or a file, got both: begin with back=file, or set back.outline=null"
+            )
+        return read_back_file(config.file).back
+    if config.outline is None:
+        raise RefusedError("back must have an outline, or a file of one as in back.file.path=phone.dxf, got neither")
+    for name, value in vars(config.file).items():
+        if value != getattr(BackFileConfig, name):
+            raise RefusedError(f"back.file.{name} is of a file: set back.file.path, too, or none of them")
+    with refused_at("back.outline"):
+        return Back(_build_shape("back.outline", config.outline))
 
 
 def build_lenses(config: LensesConfig) -> tuple[Lens, ...]:

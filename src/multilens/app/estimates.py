@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Iterator
 from typing import Any
 
+from multilens.app.back_file import told_of_file
 from multilens.app.keys import is_known
 from multilens.app.photometry import PHOTOMETRIC
 from multilens.app.refusal import RefusedError, one_line
@@ -27,6 +28,11 @@ def estimates(config: Config, given: Iterable[str] = ()) -> dict[str, str]:
         if not key.startswith(unused)
         and not any(f"{above}.{key}.".startswith(f"{mine}.") for mine in own if mine not in ("back", "lenses"))
     }
+
+
+def notes(config: Config, given: Iterable[str] = ()) -> str:
+    """Say what is worth knowing of where the numbers come from: a drawing, estimates; nothing where there is nothing."""
+    return "\n\n".join(filter(None, [told_of_file(config.back.file), told(estimates(config, given))]))
 
 
 def told(reasons: dict[str, str]) -> str:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from multilens.app import build
 from multilens.app.ending import DONE
-from multilens.app.estimates import estimates, told
+from multilens.app.estimates import notes
 from multilens.app.folder import refuse_used, write_folder
 from multilens.app.given import Given, read_given
 from multilens.app.loading import load_torch
@@ -66,7 +66,7 @@ def evaluate_command(words: Sequence[str]) -> int:
     if asked.path is None:
         assert given is not None
         design, text = _within(_of_configuration(given), given), given.text
-        lines = [account(design, chosen=True), told(estimates(given.config, given.keys))]
+        lines = [account(design, chosen=True), notes(given.config, given.keys)]
     else:
         design = _within(_of_file(asked.path, given), given)
         text = f"design: {asked.path}\noverrides: {list(asked.lines)}\n"

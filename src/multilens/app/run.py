@@ -79,10 +79,10 @@ def _run_alone(config: DictConfig, folder: Path, log: list[str]) -> None:
 
 def _estimates(config: DictConfig) -> str:
     from multilens.app import build
-    from multilens.app.estimates import estimates, told
+    from multilens.app.estimates import notes
 
     given = [line.partition("=")[0] for line in HydraConfig.get().overrides.task]
-    return told(estimates(build.typed(config), given))
+    return notes(build.typed(config), given)
 
 
 def _run_sweep_job(config: DictConfig, folder: Path, overrides: list[str], log: list[str], visible: bool) -> None:

@@ -11,6 +11,7 @@ from hydra.core.config_store import ConfigStore
 from omegaconf import MISSING
 
 from multilens.app.schema_cues import CuesConfig, SceneConfig, SensorConfig
+from multilens.app.schema_file import BackFileConfig
 from multilens.app.schema_score import FusionConfig, HistogramConfig, MetricConfig
 
 SCHEMA = "multilens_schema"
@@ -70,13 +71,15 @@ class BackConfig:
     """Where lenses may stand.
 
     Args:
-        outline: of the back.
-        keep_outs: by name.
+        outline: of the back; null where a file has it.
+        keep_outs: by name, beside those of the file.
+        file: a drawing that the back is read from.
         estimates: which of these numbers no source gives, by their keys below the back, and what each rests on.
     """
 
-    outline: ShapeConfig = field(default_factory=ShapeConfig)
+    outline: ShapeConfig | None = None
     keep_outs: dict[str, KeepOutConfig] = field(default_factory=dict)
+    file: BackFileConfig = field(default_factory=BackFileConfig)
     estimates: dict[str, str] = field(default_factory=dict)
 
 

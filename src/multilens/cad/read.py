@@ -1,19 +1,16 @@
 """A back from a drawing, whichever format it is in."""
 
-from collections.abc import Callable, Sequence
-from importlib import import_module
+from collections.abc import Sequence
 from math import isfinite
 from pathlib import Path
 
 from multilens.back import Back
-from multilens.cad.drawing import BackRead, Drawing, Wanted, back_of
+from multilens.cad.drawing import BackRead, Wanted, back_of
+from multilens.cad.formats import loaded, read_form
 from multilens.cad.layers import OUTLINE
 
 LARGEST_FILE = 16 * 2**20
 """Bytes."""
-
-FORMATS = {".dxf": "dxf", ".svg": "svg", ".geojson": "geojson", ".json": "geojson", ".wkt": "wkt"}
-"""What a file is read as, by the end of its name."""
 
 CUT = ("dxf", "svg")
 """Formats with curves that may have to be cut into edges."""
@@ -58,26 +55,14 @@ def read_with_notes(path: Path, units: str | None, wanted: Wanted) -> BackRead:
     """Do as `read_back` does, and tell what is worth knowing of it."""
     if not (isfinite(wanted.tolerance) and 0 < wanted.tolerance <= COARSEST):
         raise ValueError(f"tolerance must be > 0 and at most {COARSEST:g} mm, got {wanted.tolerance:g}")
-    form = FORMATS.get(path.suffix.lower())
-    if form is None:
-        raise ValueError(f"{path} must end in one of {', '.join(FORMATS)}, got {path.suffix or 'no such end'}")
+    form = read_form(path)
+    read = loaded("read", form)
     try:
-        read = _reader(form)
         text = _text(path)
         drawing = read(text, units, wanted.tolerance) if form in CUT else read(text, units)
         return back_of(drawing, wanted)
     except ValueError as error:
         raise ValueError(f"{path}: {error}") from None
-
-
-def _reader(form: str) -> Callable[..., Drawing]:
-    """Load what reads a format, and nothing of the others."""
-    try:
-        return getattr(import_module(f"multilens.cad.read_{form}"), f"read_{form}")
-    except ModuleNotFoundError as error:
-        raise ModuleNotFoundError(
-            f"{form.upper()} needs {error.name}, which is not installed: pip install 'multilens[cad]'", name=error.name
-        ) from None
 
 
 def _text(path: Path) -> str:

@@ -31,5 +31,7 @@ def scale_of(told: str | None, found: float | None, where: str, hint: str) -> fl
     if told is None or found is None:
         return MILLIMETRES[told] if told is not None else found or 0.0
     if not isclose(MILLIMETRES[told], found, rel_tol=ROUNDING):
-        raise ValueError(f"units must be those of the file, {found:g} mm ({where}), or not be given, got {told}")
+        raise ValueError(
+            f"units must be those of the file, in which 1 is {found:g} mm ({where}), or not be given, got {told}"
+        )
     return found
