@@ -1,5 +1,6 @@
 """Files and folders that are written whole or not at all, and the record of what made them."""
 
+import itertools
 import os
 import platform
 import shutil
@@ -8,6 +9,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import cache
+from hashlib import sha256
 from importlib.metadata import version
 from pathlib import Path
 from secrets import token_hex
@@ -97,9 +99,34 @@ def folder_written_whole(folder: Path) -> Iterator[Path]:
             raise
 
 
+def set_aside(path: Path) -> Path:
+    """Rename what is damaged to NAME.damaged, or NAME.damaged-2 and so on, and give the new path.
+
+    Raises:
+        OSError: it cannot be renamed.
+    """
+    names = (path.with_name(f"{path.name}.damaged{f'-{count}' if count > 1 else ''}") for count in itertools.count(1))
+    free = next(name for name in names if not name.exists())
+    path.rename(free)
+    return free
+
+
 def versions() -> dict[str, str]:
     """Give the version of Python and of every library that a result depends on."""
     return {"python": platform.python_version()} | {name: _version(name) for name in LIBRARIES}
+
+
+@cache
+def made_with() -> dict[str, str]:
+    """Give the versions, and a checksum of the source of multilens: where all of it is the same, results are the same to the byte.
+
+    The commit would say too much, as when a page is written, and too little where a file was changed since.
+    """
+    package = Path(__file__).parent
+    source = sha256()
+    for module in sorted(package.rglob("*.py")):
+        source.update(f"{module.relative_to(package).as_posix()}\n".encode() + module.read_bytes())
+    return versions() | {"source": source.hexdigest()[:16]}
 
 
 @cache

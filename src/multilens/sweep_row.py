@@ -6,7 +6,7 @@ from typing import Any
 
 from multilens.fields import number, record, text, whole_number
 
-UNFINISHED, UNREADABLE, FAILED = "unfinished", "unreadable", "failed"
+UNREADABLE, FAILED = "unreadable", "failed"
 
 Cell = str | int | float | None
 
@@ -29,7 +29,7 @@ class SweepRow:
     Args:
         job: its number, which is the name of its folder.
         settings: the swept keys and their values, as they were written, in the order of the sweep.
-        status: of its design, or "infeasible", "refused", "failed" (by a fault), "unfinished" or "unreadable".
+        status: of its design, or "infeasible", "refused", "failed" (by a fault) or "unreadable".
         reason: why there is no design; empty where there is one.
         note: what a reader of the design should know, such as why it is worse than its neighbour's; mostly empty.
         lens_count: how many lenses; None without a design, like all that follows.

@@ -120,7 +120,7 @@ def test_a_job_that_found_nothing_leaves_its_reason_and_no_design(swept: Path):
 
 def test_a_job_of_a_sweep_draws_no_pictures(swept: Path):
     files = {path.name for path in (swept / "0").iterdir()}
-    assert files == {"config.yaml", "design.json", "layout.csv", "row.json", "run.log", "sensitivity.csv"}
+    assert files == {"config.yaml", "design.json", "layout.csv", "row.json", "run.log", "sensitivity.csv", "time.json"}
 
 
 def test_version(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]):

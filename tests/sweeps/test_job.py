@@ -21,7 +21,7 @@ def names(folder):
 
 def test_a_job_that_found_nothing_leaves_its_row_and_its_words(tmp_path):
     write_job(tmp_path / "3", "f", ROW, words)
-    assert names(tmp_path / "3") == {"config.yaml", "run.log", "row.json"}
+    assert names(tmp_path / "3") == {"config.yaml", "run.log", "row.json", "time.json"}
     assert names(tmp_path) == {"3"}
 
 

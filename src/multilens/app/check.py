@@ -18,8 +18,10 @@ from multilens.app.compose import CONFIG_NAME, config_loader, open_hydra
 from multilens.app.keys import is_known, no_such_option, unknown_key
 from multilens.app.launcher import refuse_foreign_commands, refuse_without_cluster
 from multilens.app.refusal import RefusedError, one_line
+from multilens.app.sweep_folder import Sweep, claim_of, plain, sweep_folder, words_of
 from multilens.app.telling import told_in_one_line
 from multilens.app.yaml_limits import refuse_wild_folders
+from multilens.sweeps.claim import Claim
 
 CALLABLE_KEYS = ("_target_", "()", "class")
 """Keys of Hydra's own configuration that make it import and call what they name."""
@@ -32,19 +34,24 @@ CALLABLES = (
 CALLABLE_PACKAGES = ("hydra._internal.core_plugins.", "hydra_plugins.", "optuna.samplers.")
 """What those keys may name: our table, launchers and sweepers, and logging to the console: a run folder has a log of its own."""
 
+JOB_FOLDER = "${hydra.job.num}"
+
 LOGGING = ("job_logging", "hydra_logging")
 """Parts of Hydra's own configuration that go to Python's logging, which imports the module of any text that begins with ext://."""
 
 STREAMS = ("ext://sys.stdout", "ext://sys.stderr")
 
 
-def check_command_line(arguments: Namespace) -> None:
+def check_command_line(arguments: Namespace) -> Sweep | None:
     """Compose what would be run, build it as far as torch is not needed, and look at the folder it would go to.
 
     For a sweep every value of every swept key is looked at, each with the first values of the others.
 
     Args:
         arguments: as Hydra's parser gives them.
+
+    Returns:
+        The sweep and its folder; None where it is none.
 
     Raises:
         RefusedError: something cannot be run; one line.
@@ -56,18 +63,29 @@ def check_command_line(arguments: Namespace) -> None:
         config_name = arguments.config_name or CONFIG_NAME
         swept = [override for override in overrides if override.is_sweep_override()]
         first = composed(config_name, [_choices(override, loader)[0] for override in overrides])
-        if not (arguments.multirun or (first.hydra.mode is not None and first.hydra.mode.name == "MULTIRUN")):
+        is_sweep = arguments.multirun or (first.hydra.mode is not None and first.hydra.mode.name == "MULTIRUN")
+        if is_sweep:
+            refuse_without_cluster(_launcher(first))
+            folder = sweep_folder(_folder_of("hydra.sweep.dir", first), first, words_of(arguments))
+            swept += _swept_in_files(first, loader)
+        else:
             for override in swept:
                 raise RefusedError(
                     f"{_line(override)}: several values need multilens -m, or [...] around them where a list is meant"
                 )
-            _refuse_used_folder("hydra.run.dir", first)
-        else:
-            refuse_without_cluster(_launcher(first))
-            _refuse_used_folder("hydra.sweep.dir", first)
-            swept += _swept_in_files(first, loader)
-        for line in _each_value(overrides, swept, loader):
-            build.check(build.typed(composed(config_name, line)))
+            _refuse_used("hydra.run.dir", _folder_of("hydra.run.dir", first))
+        configs: dict[str, dict[str, Any]] = {}
+        for changed, lines in _each_value(overrides, swept, loader):
+            config = composed(config_name, lines)
+            build.check(build.typed(config))
+            configs[changed] = plain(config)
+    return Sweep(folder, _claim(overrides, swept, configs)) if is_sweep else None
+
+
+def _claim(overrides: list[Override], swept: list[Override], configs: dict[str, dict[str, Any]]) -> Claim:
+    keys = {override.get_key_element(): _line(override).partition("=")[2] for override in swept}
+    fixed = [key for override in overrides if (key := override.get_key_element()) not in keys]
+    return claim_of(fixed, keys, configs)
 
 
 def parsed(lines: list[str], loader: ConfigLoader) -> list[Override]:
@@ -136,12 +154,15 @@ def _swept_in_files(config: DictConfig, loader: ConfigLoader) -> list[Override]:
     return parsed([f"{key}={value}" for key, value in params.items()], loader)
 
 
-def _each_value(overrides: list[Override], swept: list[Override], loader: ConfigLoader) -> Iterator[list[str]]:
+def _each_value(
+    overrides: list[Override], swept: list[Override], loader: ConfigLoader
+) -> Iterator[tuple[str, list[str]]]:
+    """Give the words with the first values, and then with each other value, which is told."""
     base = {override.get_key_element(): _choices(override, loader)[0] for override in [*overrides, *swept]}
-    yield list(base.values())
+    yield "", list(base.values())
     for override in swept:
         for line in _choices(override, loader)[1:]:
-            yield list((base | {override.get_key_element(): line}).values())
+            yield line, list((base | {override.get_key_element(): line}).values())
 
 
 def composed(config_name: str, lines: list[str]) -> DictConfig:
@@ -158,8 +179,10 @@ def composed(config_name: str, lines: list[str]) -> DictConfig:
     if config.hydra.job.chdir:
         raise RefusedError("hydra.job.chdir must be null or false, the run folder is put in place at the end, got true")
     own = OmegaConf.to_container(config.hydra, resolve=False)
-    _refuse_foreign_callables("hydra", own)
     assert isinstance(own, dict)
+    if (subdir := own["sweep"]["subdir"]) != JOB_FOLDER:
+        raise RefusedError(one_line(f"hydra.sweep.subdir must be {JOB_FOLDER}, a job's number, got {subdir}"))
+    _refuse_foreign_callables("hydra", own)
     for part in LOGGING:
         _refuse_foreign_objects(f"hydra.{part}", own.get(part))
     refuse_foreign_commands(_launcher(config), lines)
@@ -188,7 +211,7 @@ def _refuse_foreign_objects(key: str, node: Any) -> None:
 
 @contextmanager
 def _as_during_a_run(config: DictConfig) -> Iterator[None]:
-    """Let what is told in terms of Hydra's own configuration be known, such as where a folder goes."""
+    # Where a folder goes may be told in terms of Hydra's own configuration, as during a run.
     before = HydraConfig.instance().cfg
     HydraConfig.instance().set_config(config)
     try:
@@ -202,11 +225,14 @@ def _launcher(config: DictConfig) -> Any:
         return OmegaConf.to_container(config.hydra.launcher, resolve=True)
 
 
-def _refuse_used_folder(key: str, config: DictConfig) -> None:
+def _folder_of(key: str, config: DictConfig) -> Path:
     with _as_during_a_run(config):
         # The name is part of the folder's: it is looked at before the folder is.
         build.check(build.typed(config))
-        folder = Path(str(OmegaConf.select(config, key)))
+        return Path(str(OmegaConf.select(config, key)))
+
+
+def _refuse_used(key: str, folder: Path) -> None:
     if folder.is_dir() and any(folder.iterdir()):
         raise RefusedError(f"{key} must be a new or empty folder, {folder} holds something already")
     if folder.exists() and not folder.is_dir():

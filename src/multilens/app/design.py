@@ -6,6 +6,7 @@ import sys
 from argparse import ArgumentParser
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from pathlib import Path
 from typing import Any, NoReturn
 
 from multilens.app.ending import DONE, SYSTEM_FAILED
@@ -44,7 +45,13 @@ def design_command(words: Sequence[str]) -> int:
     if not (arguments.help or arguments.hydra_help or arguments.shell_completion or arguments.info or arguments.cfg):
         from multilens.app.check import check_command_line
 
-        check_command_line(arguments)
+        sweep = check_command_line(arguments)
+        if sweep is not None:
+            from multilens.app.sweep_folder import open_sweep
+
+            open_sweep(sweep)
+            # Told outright, every worker finds the same folder, whatever its job is called.
+            words = [*words, _override("hydra.sweep.dir", sweep.folder)]
     else:
         refuse_wild_folders(arguments)
     register()
@@ -64,6 +71,12 @@ def design_command(words: Sequence[str]) -> int:
             raise
         raise RefusedError(one_line(str(error))) from None
     return DONE
+
+
+def _override(key: str, folder: Path) -> str:
+    """Give key=folder as Hydra reads it, whatever the folder is called."""
+    text = str(folder).replace("\\", "\\\\").replace("'", "\\'")
+    return f"{key}='{text}'"
 
 
 def _tell_in_one_line(parser: ArgumentParser) -> None:

@@ -1,4 +1,4 @@
-"""The end of a sweep: a table of all its jobs."""
+"""The end of a sweep: what is still missing, agreement, and a table of all its jobs."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -8,7 +8,8 @@ from hydra.experimental.callback import Callback
 from omegaconf import DictConfig
 
 from multilens.app.agreeing import let_neighbours_agree
-from multilens.app.ending import NOTHING_FOUND, SYSTEM_FAILED
+from multilens.app.ending import BAD_INPUT, NOTHING_FOUND, SYSTEM_FAILED, tell
+from multilens.app.refusal import RefusedError
 from multilens.sweep_row import Cell
 
 
@@ -16,17 +17,26 @@ class SweepTable(Callback):
     """Writes and prints the table of a sweep when its last job has ended; Hydra calls it once, where the sweep was started."""
 
     def on_multirun_end(self, config: DictConfig, **kwargs: Any) -> None:
-        """Let neighbours agree, write the table of the jobs' folders and print it.
+        """Wait for what others compute, let neighbours agree, write the table of the jobs' folders and print it.
 
         Raises:
-            SystemExit: a job found nothing, code 3, or the jobs could not agree, code 1.
+            SystemExit: a job found nothing, code 3; the folder holds another sweep's job, code 2; something could not be read
+                or written, code 1.
         """
+        from multilens.app.sweep_job import compute_if_missing
+        from multilens.app.waiting import finish_waiting
         from multilens.sweep_row import cells
         from multilens.sweeps.table import CSV, without_empty_columns, write_tables
 
         folder = Path(config.hydra.sweep.dir)
-        agreed = not config.sweep.agree or let_neighbours_agree(folder)
-        rows = write_tables(folder)
+        try:
+            finish_waiting(folder, compute_if_missing)
+            agreed = not config.sweep.agree or let_neighbours_agree(folder)
+            rows = write_tables(folder)
+        except (OSError, RefusedError) as error:
+            # Hydra would make a warning of it.
+            tell(error)
+            raise SystemExit(BAD_INPUT if isinstance(error, RefusedError) else SYSTEM_FAILED) from None
         print(aligned(without_empty_columns(cells(rows))))
         print(folder / CSV)
         if not agreed:

@@ -34,11 +34,16 @@ def progress_bar(log: list[str], visible: bool) -> Iterator[Listener]:
         try:
             yield listen
         finally:
-            log += [f"{stage}: {told(progress)}" for stage, progress in last.items()]
+            log += [f"{stage}: {how_far(progress)}" for stage, progress in last.items()]
 
 
 def told(progress: SearchProgress) -> str:
-    """Say in words how far a search has come: starts alive, the best so far, time left."""
+    """Say in words how far a search has come, and how long it still takes."""
+    left = f", {max(progress.seconds_left, 0):.0f} s left" if isfinite(progress.seconds_left) else ""
+    return how_far(progress) + left
+
+
+def how_far(progress: SearchProgress) -> str:
+    """Say in words how far a search has come: starts alive, the best so far."""
     best = in_words(progress.metric, progress.best, 4) if isfinite(progress.best) else "none"
-    left = f"{max(progress.seconds_left, 0):.0f} s left" if isfinite(progress.seconds_left) else ""
-    return ", ".join(filter(None, [f"{progress.alive} of {progress.starts} starts alive", f"best {best}", left]))
+    return f"{progress.alive} of {progress.starts} starts alive, best {best}"

@@ -4,25 +4,33 @@ config.yaml      what was asked, as it was resolved
 design.json, layout.csv, sensitivity.csv    as in a run folder, where a design was found
 run.log          what the run said
 row.json         what came of it as a row of the table, and checksums of the files above
+time.json        how long the search took: the one file that is not the same to the byte when the job is computed again
 """
 
+import json
+import shutil
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from hashlib import sha256
 from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from multilens.documents import document, document_content, read_text
-from multilens.fields import record, text
-from multilens.storage import folder_written_whole
-from multilens.sweep_row import SweepRow, read_row
+from multilens.fields import number, record, text
+from multilens.storage import folder_written_whole, set_aside
+from multilens.sweep_row import FAILED, UNREADABLE, SweepRow, read_row
+from multilens.sweeps.locks import forget, held_if_free
 
 if TYPE_CHECKING:
     from multilens.design import Design
 
-ROW = "row.json"
+ROW, TIME = "row.json", "time.json"
 SCHEMA, SCHEMA_VERSION = "multilens.row", 1
+
+
+class OtherJobError(ValueError):
+    """The folder of a job holds the answer to another question, or one that was made with other versions."""
 
 
 @dataclass(frozen=True)
@@ -56,13 +64,13 @@ def write_job(folder: Path, fingerprint: str, row: SweepRow, write_files: Callab
     with folder_written_whole(folder) as inside:
         write_files(inside)
         checksums = {file.name: _checksum(file) for file in sorted(inside.iterdir())}
-        content = {"fingerprint": fingerprint, "row": row.record(), "checksums": checksums}
-        text = document(SCHEMA, SCHEMA_VERSION, content)
-        (inside / ROW).write_text(text, encoding="utf-8", newline="\n")
+        content = {"fingerprint": fingerprint, "row": replace(row, time=None).record(), "checksums": checksums}
+        _write(inside / ROW, document(SCHEMA, SCHEMA_VERSION, content))
+        _write(inside / TIME, json.dumps({"time_s": row.time}) + "\n")
 
 
 def read_job(folder: Path) -> Sealed:
-    """Read the row of a job; the other files are not looked at.
+    """Read the row of a job, and its time where that can be read; the other files are not looked at.
 
     Raises:
         ValueError: row.json is damaged.
@@ -71,7 +79,57 @@ def read_job(folder: Path) -> Sealed:
     content = document_content(read_text(folder / ROW), SCHEMA, SCHEMA_VERSION)
     fields = record(content, ROW, ("fingerprint", "row", "checksums"))
     checksums = record(fields["checksums"], "checksums", (), optional=list(fields["checksums"] or ()))
-    return Sealed(text(fields["fingerprint"], "fingerprint"), read_row(fields["row"], "row"), checksums)
+    row = replace(read_row(fields["row"], "row"), time=_time(folder))
+    return Sealed(text(fields["fingerprint"], "fingerprint"), row, checksums)
+
+
+def kept_job(folder: Path, fingerprint: str, listener: Callable[[str], None] = lambda line: None) -> Sealed | None:
+    """Give what the folder of a job holds of an earlier run, if it need not be computed again.
+
+    What is damaged is set aside. Whoever calls this holds the job's lock.
+
+    Args:
+        folder: of the job, there or not.
+        fingerprint: of what is asked and of what would answer it.
+        listener: told in one line of what is set aside.
+
+    Raises:
+        OtherJobError: the folder was written for another fingerprint.
+        OSError: it cannot be read or renamed.
+    """
+    if not folder.exists() or (folder.is_dir() and not any(folder.iterdir())):
+        return None
+    try:
+        sealed = read_job(folder)
+        refuse_damaged(folder, sealed)
+    except (ValueError, FileNotFoundError, NotADirectoryError) as damage:
+        reason = damage if isinstance(damage, ValueError) else f"{ROW} is missing"
+        listener(f"{folder}: {reason}; set aside as {set_aside(folder).name}, computed again")
+        return None
+    if sealed.fingerprint != fingerprint:
+        raise OtherJobError(f"{folder} holds another job")
+    return sealed
+
+
+def forget_failed(sweep: Path) -> int:
+    """Remove the folders of jobs that failed by a fault, so that they are tried again, and give how many others there are.
+
+    Args:
+        sweep: folder of the sweep.
+
+    Raises:
+        OSError: a folder cannot be read or removed.
+    """
+    others = 0
+    for row in sweep.glob(f"[0-9]*/{ROW}"):
+        with held_if_free(sweep, row.parent.name) as free:
+            if free and _status(row.parent) == FAILED:
+                shutil.rmtree(row.parent)
+            else:
+                others += 1
+            if free:
+                forget(sweep, row.parent.name)
+    return others
 
 
 def refuse_damaged(folder: Path, sealed: Sealed) -> None:
@@ -122,6 +180,25 @@ def row_of(design: "Design", job: int, settings: tuple[tuple[str, str], ...], ti
         back_area=problem.back.outline.area,
         time=time,
     )
+
+
+def _status(folder: Path) -> str:
+    try:
+        return read_job(folder).row.status
+    except (ValueError, FileNotFoundError):
+        return UNREADABLE
+
+
+def _time(folder: Path) -> float | None:
+    """Give the time that a job took; None where it found nothing, or where nobody can tell any more."""
+    try:
+        return number(json.loads(read_text(folder / TIME))["time_s"], TIME)
+    except (ValueError, TypeError, KeyError, RecursionError, FileNotFoundError):
+        return None
+
+
+def _write(path: Path, text: str) -> None:
+    path.write_text(text, encoding="utf-8", newline="\n")
 
 
 def _finite(value: float) -> float | None:
