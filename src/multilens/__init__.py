@@ -44,6 +44,7 @@ if TYPE_CHECKING:
     from multilens.penalty import area_penalty as area_penalty
     from multilens.penalty import distance_penalty as distance_penalty
     from multilens.problem import Problem as Problem
+    from multilens.report.write import write_report as write_report
     from multilens.robust import Robust as Robust
     from multilens.scene import Scene as Scene
     from multilens.score_problem import ScoreProblem as ScoreProblem
@@ -100,6 +101,7 @@ _HOME = {
     "smallest_aperture": "inverse.least",
     "smallest_back": "inverse.least",
     "solve": "search.solve",
+    "write_report": "report.write",
 }
 
 

@@ -265,10 +265,8 @@ class Design:
         _refuse_unless_it_holds(design, fields)
         return design
 
-    def __str__(self) -> str:
-        if self.status == INFEASIBLE:
-            return f"{self.status}: {self.reason}"
-        table = layout_lines(self.layout, self.problem.lenses)
+    def facts(self) -> dict[str, str]:
+        """Give what is told of a design that was found, beside its lenses: words by name, such as RMSE and lower bound."""
         facts = {"status": self.status}
         metric = self.problem.metric
         if metric is None:
@@ -300,6 +298,12 @@ class Design:
         closest = self.certificate.closest
         room = closest.room if closest.room >= TOUCHING else 0.0
         facts["tightest clearance"] = f"{room:.3g} mm, {closest.what}"
+        return facts
+
+    def __str__(self) -> str:
+        if self.status == INFEASIBLE:
+            return f"{self.status}: {self.reason}"
+        table, facts = layout_lines(self.layout, self.problem.lenses), self.facts()
         wide = max(map(len, facts))
         return "\n".join([*table, "", *(f"{name:<{wide}}  {fact}" for name, fact in facts.items())])
 

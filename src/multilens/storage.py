@@ -14,6 +14,9 @@ from importlib.metadata import version
 from pathlib import Path
 from secrets import token_hex
 
+ESTIMATES = "estimates, which no source gives:"
+"""Line of a log after which they come, a line each, indented."""
+
 LIBRARIES = ("multilens", "torch", "numpy", "scipy", "shapely", "hydra-core")
 
 

@@ -12,7 +12,7 @@ from typing import NoReturn
 from multilens.app.ending import BAD_INPUT, DONE, INTERRUPTED, SYSTEM_FAILED, TERMINATED, TerminatedError, tell
 from multilens.app.refusal import RefusedError
 
-COMMANDS = ("design", "evaluate", "export", "least", "plot")
+COMMANDS = ("design", "evaluate", "export", "least", "plot", "report")
 """What the first word may be; without one of them it is design. NAME is `name_command` of the module `multilens.app.name`."""
 
 

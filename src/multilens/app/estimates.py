@@ -8,6 +8,7 @@ from multilens.app.keys import is_known
 from multilens.app.photometry import PHOTOMETRIC
 from multilens.app.refusal import RefusedError, one_line
 from multilens.app.schema import BackConfig, Config, LensConfig, LensesConfig
+from multilens.storage import ESTIMATES
 
 EACH = "lenses.each."
 
@@ -41,7 +42,7 @@ def told(reasons: dict[str, str]) -> str:
     for key, reason in reasons.items():
         keys.setdefault(reason, []).append(key)
     lines = [f"  {', '.join(_shared(below))}: {reason}" for reason, below in keys.items()]
-    return "\n".join(["estimates, which no source gives:", *lines]) if lines else ""
+    return "\n".join([ESTIMATES, *lines]) if lines else ""
 
 
 def _shared(keys: list[str]) -> list[str]:

@@ -60,9 +60,26 @@ def draw_layout(ax: Axes, problem: Question, layout: Layout) -> None:
         problem: what is asked; one without depths has no best pair and no foci.
         layout: one layout, not a batch.
     """
-    best = best_pairs(problem, layout)
-    table = _fitting_table(ax, problem, layout, _signs(problem, layout, best))
+    table = _fitting_table(ax, problem, layout, _signs(problem, layout, best_pairs(problem, layout)))
     canvas, paper, corner = _arrange(ax, problem.back.outline, table)
+    _draw(canvas, paper, problem, layout)
+    table.draw(canvas, *corner)
+
+
+def draw_back(ax: Axes, problem: Question, layout: Layout) -> None:
+    """Draw what `draw_layout` draws, as large as the axes allow, without the table.
+
+    In an SVG file lens 2 has the id `lens-2` and the strong baseline of lenses 1 and 2 `pair-1-2`.
+    """
+    width, height = paper_size(ax)
+    left, top, right, bottom = problem.back.outline.bounds
+    scale = min((width - 2 * MARGIN) / (right - left), (height - SCALE_BAR_HEIGHT - 2 * MARGIN) / (bottom - top))
+    canvas = Canvas.scaled(ax, (left + right - width / scale) / 2, top - MARGIN / scale, scale)
+    _draw(canvas, Paper(Box(width / 2, height / 2, width, height)), problem, layout)
+
+
+def _draw(canvas: Canvas, paper: Paper, problem: Question, layout: Layout) -> None:
+    best = best_pairs(problem, layout)
     _draw_outline(canvas, problem.back.outline)
     for keep_out in problem.back.keep_outs:
         _draw_keep_out(canvas, keep_out)
@@ -82,7 +99,12 @@ def draw_layout(ax: Axes, problem: Question, layout: Layout) -> None:
     _write_numbers(canvas, paper, layout)
     for keep_out in problem.back.keep_outs:
         _write_keep_out(canvas, paper, keep_out)
-    table.draw(canvas, *corner)
+
+
+def part_name(measurement: Measurement) -> str:
+    """Give the id that a lens or a pair has in an SVG file: lens-2, pair-1-2."""
+    kind = "lens" if len(measurement.lenses) == 1 else "pair"
+    return "-".join([kind, *(str(lens + 1) for lens in measurement.lenses)])
 
 
 def best_pairs(problem: Question, layout: Layout) -> tuple[Measurement, ...]:
@@ -156,7 +178,7 @@ def _draw_lenses(canvas: Canvas, problem: Question, layout: Layout) -> None:
     for i, (centre, body) in enumerate(zip(layout.position.tolist(), bodies, strict=True)):
         colour = lens_colour(i)
         look = {"facecolor": tint(colour, 0.78), "edgecolor": colour, "linewidth": 0.9}
-        canvas.axes.add_patch(Circle(centre, body, zorder=3, **look))
+        canvas.axes.add_patch(Circle(centre, body, zorder=3, gid=f"lens-{i + 1}", **look))
         radius = layout.aperture_radius[i].item()
         canvas.axes.add_patch(Circle(centre, radius, facecolor=colour, edgecolor="none", zorder=6))
 
@@ -193,7 +215,8 @@ def _draw_baselines(canvas: Canvas, layout: Layout, best: tuple[Measurement, ...
     canvas.axes.add_collection(LineCollection(ends, colors=RULE, linewidths=0.6, zorder=2.5))
     for pair in best:
         start, end = (centres[i] for i in pair.lenses)
-        canvas.line(start, end, color=measurement_colour(pair), linewidth=2.4, zorder=4, solid_capstyle="butt")
+        look = {"color": measurement_colour(pair), "linewidth": 2.4, "solid_capstyle": "butt"}
+        canvas.line(start, end, zorder=4, gid=part_name(pair), **look)
 
 
 def _write_lengths(canvas: Canvas, paper: Paper, layout: Layout, best: tuple[Measurement, ...]) -> None:

@@ -30,6 +30,9 @@ ROUND_DIGITS = (1.0, 2.0, 5.0)
 FEW_DECADES = 300.0
 """Factor between the ends of a logarithmic axis below which 2 and 5 are ticked beside the powers of ten."""
 
+NARROW = 400.0
+"""Points across, below which the legend has two lines, and the words below the bar too."""
+
 BAR_HEIGHT = 24.0
 """Points."""
 
@@ -61,9 +64,9 @@ def draw_errors(ax: Axes, problem: Problem, layout: Layout) -> None:
         ax.set_yscale("log")
     ax.set_ylim(bottom, top)
     floor = 1e-3 * bottom if logarithmic else 0.0
-    for measurement, row in zip(problem.measurements, np.maximum(errors, floor), strict=True):
+    for k, (measurement, row) in enumerate(zip(problem.measurements, np.maximum(errors, floor), strict=True)):
         look = {"color": measurement_colour(measurement), "dashes": measurement_dashes(measurement)}
-        ax.plot(at, row, linewidth=0.8, alpha=0.65, zorder=2, **look)
+        ax.plot(at, row, linewidth=0.8, alpha=0.65, zorder=2, gid=curve_name(k), **look)
     # Widest first: a narrow dip must not drown in the round ends of its neighbours.
     measured = [band for band in winner_bands(problem, layout) if band.measurement != NOTHING]
     for band in sorted(measured, key=lambda band: band.near / band.far):
@@ -89,6 +92,11 @@ def draw_errors(ax: Axes, problem: Problem, layout: Layout) -> None:
     ax.grid(True, which="major", color="#ececec", linewidth=0.8)
     ax.set_axisbelow(True)
     _draw_legend(ax, problem, rmse, beside_the_best)
+
+
+def curve_name(measurement: int) -> str:
+    """Give the id that the thin curve of a measurement, by its index, has in an SVG file."""
+    return f"curve-{measurement + 1}"
 
 
 def draw_winners(ax: Axes, problem: Problem, layout: Layout) -> None:
@@ -119,7 +127,8 @@ def draw_winners(ax: Axes, problem: Problem, layout: Layout) -> None:
     best = "best measurement" if isinstance(problem.fusion, Best) else "measurement that tells most"
     caption = f"{best}; it changes at the depths below ({unit.name})"
     depths = [bands[0].near, *(band.far for band in bands)] if bands[0].near < bands[-1].far else [bands[0].near]
-    left_out = _write_depths(strip, depths, unit, caption + "; numbers are lenses" * short)
+    caption += "; numbers are lenses" * short
+    left_out = _write_depths(strip, depths, unit, caption if width >= NARROW else caption.replace("; ", "\n", 1))
     if unnamed or left_out:
         words = f"too narrow to label: {unnamed} names, {left_out} depths"
         ax.text(1, 0, words, transform=ax.transAxes, ha="right", fontsize=0.8 * SMALL_FONT_SIZE, color=FAINT)
@@ -207,10 +216,11 @@ def _draw_legend(ax: Axes, problem: Problem, rmse: float, beside_the_best: str) 
     handles.append(
         Line2D([], [], color=INK, linewidth=1.0, linestyle=(0, (5, 3)), label=f"RMSE {significant(rmse)} mm")
     )
-    place = {"loc": "lower left", "bbox_to_anchor": (0.0, 1.0), "ncols": len(handles), "borderaxespad": 0.3}
-    wide = (
-        {"columnspacing": 1.4, "handlelength": 2.4} if len(handles) < 5 else {"columnspacing": 0.9, "handlelength": 1.6}
-    )
+    narrow = paper_size(ax)[0] < NARROW
+    columns = min(len(handles), 3) if narrow else len(handles)
+    place = {"loc": "lower left", "bbox_to_anchor": (0.0, 1.0), "ncols": columns, "borderaxespad": 0.3}
+    spaced = narrow or len(handles) < 5
+    wide = {"columnspacing": 1.4, "handlelength": 2.4} if spaced else {"columnspacing": 0.9, "handlelength": 1.6}
     ax.legend(handles=handles, frameon=False, fontsize=SMALL_FONT_SIZE, **wide, **place)
 
 

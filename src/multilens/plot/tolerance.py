@@ -16,7 +16,7 @@ BAR = 0.022
 """Height of the bar, as a part of the picture's."""
 
 
-def draw_tolerance(ax: Axes, problem: Problem, layout: Layout, tolerance: Tolerance) -> None:
+def draw_tolerance(ax: Axes, problem: Problem, layout: Layout, tolerance: Tolerance, above: float = 24.0) -> None:
     """Draw the error that is allowed as a dotted line, and a bar along the foot at the depths whose error is within it.
 
     Args:
@@ -24,6 +24,7 @@ def draw_tolerance(ax: Axes, problem: Problem, layout: Layout, tolerance: Tolera
         problem: what is asked.
         layout: one layout, not a batch.
         tolerance: largest error.
+        above: points between the curves and the words: room for the legend.
     """
     near, far = ax.get_xlim()
     depths = torch.from_numpy(np.geomspace(near, far, 256))
@@ -33,4 +34,4 @@ def draw_tolerance(ax: Axes, problem: Problem, layout: Layout, tolerance: Tolera
     # Above the legend, where no curve is.
     place: dict[str, Any] = {"textcoords": "offset points", "xycoords": "axes fraction", "ha": "left", "va": "bottom"}
     words = f"dots and bar: error at most {tolerance}"
-    ax.annotate(words, (0, 1), xytext=(6, 24), color=KEPT, fontsize=SMALL_FONT_SIZE, parse_math=False, **place)
+    ax.annotate(words, (0, 1), xytext=(6, above), color=KEPT, fontsize=SMALL_FONT_SIZE, parse_math=False, **place)

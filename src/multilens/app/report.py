@@ -1,0 +1,51 @@
+"""`multilens report`: one HTML file that tells of what was saved."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from multilens.app.ending import DONE
+from multilens.app.refusal import RefusedError, one_line
+
+OUT = "out="
+
+
+def report_command(words: Sequence[str]) -> int:
+    """Write the report of a run and print its path.
+
+    Args:
+        words: the folder of the run, and `out=FILE.html` for another place than report.html in that folder.
+
+    Returns:
+        The exit code.
+
+    Raises:
+        RefusedError: there is no such folder, or what is in it is damaged.
+        OSError: the report cannot be written.
+    """
+    folders, outs = (
+        [word for word in words if not word.startswith(OUT)],
+        [word for word in words if word.startswith(OUT)],
+    )
+    if len(folders) != 1 or folders[0].startswith("-") or "=" in folders[0]:
+        raise RefusedError(
+            f"report must be given one folder, as in multilens report runs/demo, got {' '.join(folders) or 'none'}"
+        )
+    if len(outs) > 1 or OUT in outs:
+        raise RefusedError(
+            f"out must be one file, as in out=phone.html, got {' '.join(outs).replace(OUT, '').strip() or 'none'}"
+        )
+    folder = Path(folders[0])
+    if not (folder / "design.json").is_file():
+        raise RefusedError(
+            f"report: {folder} must be the folder of a run that found a design, there is no design.json in it"
+        )
+    from multilens.app.loading import load_torch
+
+    load_torch()
+    from multilens.report.write import write_report
+
+    try:
+        print(write_report(folder, outs[0].removeprefix(OUT) if outs else None))
+    except ValueError as error:
+        raise RefusedError(f"report: {one_line(str(error))}") from None
+    return DONE
