@@ -6,6 +6,11 @@ from math import acos, ceil
 import numpy as np
 from jaxtyping import Float
 
+from multilens.geometry.shape import refuse_wild_coordinates
+
+MOST_BULGE = 1e6
+"""Of an arc that is as good as a whole circle."""
+
 
 @dataclass(frozen=True, eq=False)
 class Curve:
@@ -18,11 +23,20 @@ class Curve:
         points: mm, at least two, none like the one before it.
         bulges: of the piece that begins at each point.
         exact: whether these pieces are the curve; else it was a spline, an ellipse or the like, and these lie along it.
+
+    Raises:
+        ValueError: a point, or the middle of an arc, is not finite or beyond a kilometre.
     """
 
     points: Float[np.ndarray, "m 2"]
     bulges: Float[np.ndarray, " m"]
     exact: bool = True
+
+    def __post_init__(self) -> None:
+        refuse_wild_coordinates(self.points)
+        if not (np.abs(self.bulges) < MOST_BULGE).all():
+            raise ValueError(f"bulge must be finite and less than {MOST_BULGE:g}, got {np.abs(self.bulges).max():g}")
+        refuse_wild_coordinates(self.middles)
 
     @property
     def straight(self) -> bool:
@@ -82,7 +96,7 @@ class Curve:
 def circle(centre: tuple[float, float], radius: float) -> Curve:
     """Give a circle as two half circles; mm."""
     x, y = centre
-    return Curve(np.array([[x - radius, y], [x + radius, y]]), np.ones(2))
+    return Curve(np.array([[x - radius, y], [x + radius, y]], dtype=float), np.ones(2))
 
 
 def tidy(points: Float[np.ndarray, "m 2"], bulges: Float[np.ndarray, " m"], exact: bool = True) -> Curve:

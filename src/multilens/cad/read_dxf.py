@@ -22,6 +22,9 @@ APPLICATION = "MULTILENS"
 TOUCHING = 1e-3
 """mm; ends of lines and arcs that are no farther apart meet."""
 
+FLAT = 1e-9
+"""By which the height of a direction may differ from 1."""
+
 FINER = 4
 """Splines and ellipses are cut this much finer than asked for: how far they are off is only estimated."""
 
@@ -74,17 +77,25 @@ def _units(document: Document) -> float | None:
 def _parts(layer: str, entities: Sequence[DXFEntity], factor: float, tolerance: float) -> Iterator[Part]:
     loose = []
     for entity in entities:
-        if (kind := entity.dxftype()) not in CURVES:
-            yield Part((layer,), fault=f"a {kind} cannot be read: explode it into curves, or put it on another layer")
-            continue
-        upright.upright(entity)
-        if abs(entity.dxf.get("extrusion", (0, 0, 1))[2] - 1) > 1e-9:
-            yield Part((layer,), fault=f"a {kind} must lie in the plane of x and y, got one that is tilted")
-        elif (curve := _closed(entity, factor, tolerance)) is not None:
-            yield Part((layer,), (curve,), *_said(entity, factor))
-        else:
-            loose.append(entity)
+        try:
+            _refuse_unless_flat(entity)
+            curve = _closed(entity, factor, tolerance)
+            if curve is None:
+                loose.append(entity)
+            else:
+                yield Part((layer,), (curve,), *_said(entity, factor))
+        except ValueError as error:
+            yield Part((layer,), fault=f"a {entity.dxftype()} {error}")
     yield from _loops(layer, loose, factor, tolerance)
+
+
+def _refuse_unless_flat(entity: DXFEntity) -> None:
+    """Refuse what is no curve in the plane of x and y; one drawn from below is turned to the same curve from above."""
+    if entity.dxftype() not in CURVES:
+        raise ValueError("cannot be read: explode it into curves, or put it on another layer")
+    upright.upright(entity)
+    if abs(entity.dxf.get("extrusion", (0, 0, 1))[2] - 1) > FLAT:
+        raise ValueError("must lie in the plane of x and y, got one that is tilted")
 
 
 def _closed(entity: DXFEntity, factor: float, tolerance: float) -> Curve | None:
@@ -131,10 +142,17 @@ def _loops(layer: str, loose: list[DXFEntity], factor: float, tolerance: float) 
             where = f"({factor * x0:g}, {factor * y0:g}) to ({factor * x1:g}, {factor * y1:g}) mm"
             yield Part((layer,), fault=f"curve must be closed, got ends {factor * apart:g} mm apart, from {where}")
             continue
-        joined = edgesmith.lwpolyline_from_chain(chain, max_sagitta=tolerance / factor / 2 / FINER)
-        curve = _bulged(np.array(list(joined.get_points("xyb"))), factor)
-        smooth = all(edge.payload.dxftype() not in ("SPLINE", "ELLIPSE") for edge in chain)
-        yield Part((layer,), (_begun_alike(curve, smooth),))
+        try:
+            yield Part((layer,), (_joined(chain, factor, tolerance),))
+        except ValueError as error:
+            yield Part((layer,), fault=f"lines and arcs that meet: {error}")
+
+
+def _joined(chain: Sequence[edgeminer.Edge], factor: float, tolerance: float) -> Curve:
+    joined = edgesmith.lwpolyline_from_chain(chain, max_sagitta=tolerance / factor / 2 / FINER)
+    curve = _bulged(np.array(list(joined.get_points("xyb"))), factor)
+    smooth = all(edge.payload.dxftype() not in ("SPLINE", "ELLIPSE") for edge in chain)
+    return _begun_alike(curve, smooth)
 
 
 def _begun_alike(curve: Curve, exact: bool) -> Curve:

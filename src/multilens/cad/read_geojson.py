@@ -83,10 +83,12 @@ def _part(feature: object, factor: float, where: str) -> Part | None:
     layers = (str(own.get("layer") or name),)
     if kind not in ("Polygon", "MultiPolygon"):
         return Part(layers, fault=f"{where} must be a Polygon or MultiPolygon, got a {kind!r:.40}")
-    shape = _geometry(geometry, kind)
-    curves = curves_of(shape, factor, where)
-    if "core" in own:
-        curves = _exact(own, curves, factor, where)
+    try:
+        curves = curves_of(_geometry(geometry, kind), factor, where)
+        if "core" in own:
+            curves = _exact(own, curves, factor, where)
+    except ValueError as error:
+        return Part(layers, fault=str(error))
     clearance = own.get("clearance")
     return Part(layers, curves, name, None if clearance is None else factor * number(clearance, f"{where}.clearance"))
 

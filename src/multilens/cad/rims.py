@@ -1,6 +1,5 @@
 """From a shape to the curves of its rim, to be drawn."""
 
-from itertools import pairwise
 from math import acos, atan2, ceil, pi, tan
 
 import numpy as np
@@ -68,11 +67,3 @@ def _grown(core: BaseGeometry, radius: float) -> Curve:
 def bare(curve: Curve) -> bool:
     """Whether a curve is a circle drawn as two halves."""
     return len(curve.points) == 2 and bool((curve.bulges == 1).all())
-
-
-def closed(curve: Curve) -> list[tuple[tuple[float, float], tuple[float, float], float]]:
-    """Give start, end and bulge of each piece of a curve."""
-    ring = [*curve.points.tolist(), curve.points[0].tolist()]
-    return [
-        ((*start,), (*end,), bulge) for (start, end), bulge in zip(pairwise(ring), curve.bulges.tolist(), strict=True)
-    ]

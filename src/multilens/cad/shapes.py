@@ -3,10 +3,11 @@
 from collections.abc import Sequence
 
 import numpy as np
+from jaxtyping import Float
 from shapely import MultiPoint, MultiPolygon, Polygon
 
 from multilens.cad.curve import Curve
-from multilens.geometry.shape import Shape, refuse_wild_coordinates
+from multilens.geometry.shape import Shape
 
 SAME = 1e-6
 """mm; radii and places that differ by less are one: programs round what they write."""
@@ -33,10 +34,8 @@ def shape_of(curves: Sequence[Curve], within: bool, tolerance: float) -> tuple[S
         The shape, and by how much its rim may have moved, mm.
 
     Raises:
-        ValueError: curves cross themselves or each other, are not finite, or enclose nothing.
+        ValueError: curves cross themselves or each other, enclose nothing, or become too many edges.
     """
-    for curve in curves:
-        refuse_wild_coordinates(np.concatenate([curve.points, curve.middles]))
     grown = grown_core(curves[0]) if len(curves) == 1 else None
     if grown is not None:
         return grown, 0.0
@@ -59,13 +58,22 @@ def grown_core(curve: Curve) -> Shape | None:
     radii = curve.radii
     if np.ptp(radii) > SAME:
         return None
-    core = MultiPoint(np.round(curve.centres, DECIMALS)).convex_hull
+    core = MultiPoint(_apart(np.round(curve.centres, DECIMALS))).convex_hull
     shape = Shape(core, round(float(radii.mean()), DECIMALS))
     on_rim = np.concatenate([curve.points, curve.middles])
     off = np.abs(shape.signed_distance(*on_rim.T))
     # Every end and middle on the rim of a convex shape, and once around it: the curve is the rim.
     once = abs(Polygon(curve.cut(0.01 * shape.radius)).area / shape.area - 1) < 0.1
     return shape if once and off.max() <= SAME and core.equals(core.convex_hull) else None
+
+
+def _apart(points: Float[np.ndarray, "a 2"]) -> list[tuple[float, float]]:
+    """Give points without those that are one with another: a corner may be drawn as several arcs."""
+    found: list[tuple[float, float]] = []
+    for x, y in points.tolist():
+        if all(max(abs(x - a), abs(y - b)) > SAME for a, b in found):
+            found.append((x, y))
+    return found
 
 
 def _polygon(ring: np.ndarray) -> Polygon:

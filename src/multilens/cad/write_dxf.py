@@ -5,6 +5,7 @@ from contextlib import contextmanager
 from io import StringIO
 
 import ezdxf
+import numpy as np
 from ezdxf.enums import TextEntityAlignment
 from ezdxf.layouts import Modelspace
 from ezdxf.units import MM
@@ -12,7 +13,7 @@ from ezdxf.units import MM
 from multilens.cad.layers import APERTURES, BASELINES, BODIES, KEEP_OUTS, LABELS, OUTLINE, clean
 from multilens.cad.plan import Plan
 from multilens.cad.read_dxf import APPLICATION
-from multilens.cad.rims import bare, closed, rims
+from multilens.cad.rims import bare, rims
 from multilens.geometry.shape import Shape
 
 VERSION = "R2010"
@@ -72,7 +73,7 @@ def _draw_shape(space: Modelspace, shape: Shape, layer: str, tags: list[tuple[in
         if bare(curve):
             entity = space.add_circle((*curve.centres[0].tolist(),), float(shape.radius), {"layer": layer})
         else:
-            rows = [(*start, bulge) for start, _, bulge in closed(curve)]
+            rows = np.column_stack([curve.points, curve.bulges]).tolist()
             entity = space.add_lwpolyline(rows, "xyb", close=True, dxfattribs={"layer": layer})
         if tags:
             entity.set_xdata(APPLICATION, tags)

@@ -3,10 +3,13 @@
 from collections.abc import Iterator, Sequence
 from xml.sax.saxutils import escape, quoteattr
 
+import numpy as np
+from jaxtyping import Float
+
 from multilens.cad.curve import Curve
 from multilens.cad.layers import APERTURES, BASELINES, BODIES, KEEP_OUTS, LABELS, OUTLINE, clean
 from multilens.cad.plan import Plan
-from multilens.cad.rims import bare, closed, rims
+from multilens.cad.rims import bare, rims
 from multilens.geometry.shape import Shape
 
 LOOKS = {
@@ -77,20 +80,21 @@ def _shape(shape: Shape, name: str, more: str) -> str:
 def _path(curves: Sequence[Curve]) -> str:
     words = []
     for curve in curves:
-        pieces, radii = closed(curve), iter(curve.radii.tolist())
-        words.append(f"M {_point(pieces[0][0])}")
-        for _, end, bulge in pieces:
+        radii = iter(curve.radii.tolist())
+        words.append(f"M {_point(curve.points[0])}")
+        for end, middle, bulge in zip(curve.ends, curve.middles, curve.bulges.tolist(), strict=True):
             if bulge == 0:
                 words.append(f"L {_point(end)}")
-            else:
-                radius = next(radii)
-                words.append(f"A {radius!r} {radius!r} 0 {int(abs(bulge) > 1)} {int(bulge > 0)} {_point(end)}")
+                continue
+            # Halves: the centre of nearly half a circle is hard to tell from its ends and its radius.
+            arc = f"A {(radius := next(radii))!r} {radius!r} 0 0 {int(bulge > 0)}"
+            words += [f"{arc} {_point(middle)}", f"{arc} {_point(end)}"]
         words.append("Z")
     return " ".join(words)
 
 
-def _point(point: tuple[float, float]) -> str:
-    return f"{point[0]!r} {point[1]!r}"
+def _point(point: Float[np.ndarray, "2"]) -> str:
+    return " ".join(map(repr, point.tolist()))
 
 
 def _title(words: str) -> str:
