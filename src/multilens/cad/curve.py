@@ -8,6 +8,9 @@ from jaxtyping import Float
 
 from multilens.geometry.shape import refuse_wild_coordinates
 
+NOTHING = 1e-9
+"""mm; a shorter piece is what rounding leaves of none."""
+
 MOST_BULGE = 1e6
 """Of an arc that is as good as a whole circle."""
 
@@ -103,9 +106,10 @@ def tidy(points: Float[np.ndarray, "m 2"], bulges: Float[np.ndarray, " m"], exac
     """Give a curve without its pieces of no length, such as that which closes a ring whose last point is its first.
 
     Raises:
-        ValueError: fewer than two points are left.
+        ValueError: a point is not finite, or fewer than two are left.
     """
-    kept = (np.roll(points, -1, axis=0) != points).any(axis=-1)
+    refuse_wild_coordinates(points)
+    kept = (np.abs(np.roll(points, -1, axis=0) - points) > NOTHING).any(axis=-1)
     if kept.sum() < 2:
         raise ValueError(f"curve must have at least 2 points apart, got {kept.sum()}")
     return Curve(points[kept], bulges[kept], exact)

@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import count
 
-import shapely
 from shapely.affinity import scale
+from shapely.errors import ShapelyError
 
 from multilens.back import Back, KeepOut
 from multilens.cad.curve import Curve
@@ -133,7 +133,7 @@ def _shape(name: str, curves: Sequence[Curve], within: bool, drawing: Drawing, w
         raise ValueError(f"{name} must be at most {MOST_CURVES} curves, got {len(curves)}")
     try:
         shape, moved = shape_of(curves, within, wanted.tolerance)
-    except (ValueError, shapely.GEOSException) as error:
+    except (ValueError, ShapelyError) as error:
         raise ValueError(f"{name}: {error}") from None
     if drawing.y_up:
         shape = Shape(scale(shape.core, 1, -1, origin=(0, 0)), shape.radius)

@@ -23,7 +23,7 @@ TOUCHING = 1e-3
 """mm; ends of lines and arcs that are no farther apart meet."""
 
 FLAT = 1e-9
-"""By which the height of a direction may differ from 1."""
+"""By how much a direction may lean away from straight up."""
 
 FINER = 4
 """Splines and ellipses are cut this much finer than asked for: how far they are off is only estimated."""
@@ -94,7 +94,8 @@ def _refuse_unless_flat(entity: DXFEntity) -> None:
     if entity.dxftype() not in CURVES:
         raise ValueError("cannot be read: explode it into curves, or put it on another layer")
     upright.upright(entity)
-    if abs(entity.dxf.get("extrusion", (0, 0, 1))[2] - 1) > FLAT:
+    across, along, up = entity.dxf.get("extrusion", (0, 0, 1))
+    if max(abs(across), abs(along)) > FLAT * up:
         raise ValueError("must lie in the plane of x and y, got one that is tilted")
 
 

@@ -3,8 +3,10 @@
 import json
 from typing import Any
 
+import numpy as np
 import shapely
 from shapely import LineString, Point, Polygon
+from shapely.errors import ShapelyError
 from shapely.geometry import shape as geometry_of
 
 from multilens.cad.curve import Curve
@@ -96,8 +98,9 @@ def _part(feature: object, factor: float, where: str) -> Part | None:
 def _geometry(content: object, kind: object) -> Any:
     """Read a geometry; whatever shapely stumbles over is refused."""
     try:
-        return geometry_of(content)
-    except (shapely.GEOSException, AttributeError, KeyError, TypeError, ValueError, IndexError) as error:
+        with np.errstate(invalid="ignore"):
+            return geometry_of(content)
+    except (ShapelyError, AttributeError, KeyError, TypeError, ValueError, IndexError) as error:
         raise ValueError(f"GeoJSON must be well formed, got a damaged {kind!r:.40}: {error}") from None
 
 

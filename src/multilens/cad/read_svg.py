@@ -19,6 +19,7 @@ LABEL = "{http://www.inkscape.org/namespaces/inkscape}label"
 CLEARANCE = "data-clearance"
 
 NUMBERS = ("x", "y", "width", "height", "rx", "ry", "cx", "cy", "r")
+SIZES = ("width", "height", "rx", "ry", "r")
 ROUND = {"circle": svgelements.Circle, "ellipse": svgelements.Ellipse, "rect": svgelements.Rect}
 POINTED = {"polygon": svgelements.Polygon, "polyline": svgelements.Polyline}
 GROUPS = ("g", "a")
@@ -118,8 +119,8 @@ def _number(name: str, text: str) -> float:
         number = float(text.strip().removesuffix("px"))
     except ValueError:
         number = float("nan")
-    if not isfinite(number) or (name == "viewBox" and number <= 0):
-        raise ValueError(f"{name} must be a plain finite number, got {text!r:.40}")
+    if not isfinite(number) or (name == "viewBox" and number <= 0) or (name in SIZES and number < 0):
+        raise ValueError(f"{name} must be a plain finite number{', >= 0' if name in SIZES else ''}, got {text!r:.40}")
     return number
 
 
@@ -145,9 +146,8 @@ def _parts(element: Element, above: Matrix, layers: tuple[str, ...], factor: flo
             clearance = child.get(CLEARANCE)
             said = None if clearance is None else factor * _number(CLEARANCE, clearance)
             try:
-                yield Part(
-                    inside, _curves(_path(child, kind, matrix), factor, tolerance), title or (names or [""])[0], said
-                )
+                curves = _curves(_path(child, kind, matrix), factor, tolerance)
+                yield Part(inside, curves, title or (names or [""])[0], said)
             except ValueError as error:
                 yield Part(inside, fault=str(error))
 
@@ -176,7 +176,10 @@ def _curves(path: Path, factor: float, tolerance: float) -> tuple[Curve, ...]:
     subpaths = [
         [segment for segment in Path(subpath) if not isinstance(segment, Move)] for subpath in path.as_subpaths()
     ]
-    return tuple(_curve(segments, factor, tolerance) for segments in subpaths if segments)
+    curves = tuple(_curve(segments, factor, tolerance) for segments in subpaths if segments)
+    if not curves:
+        raise ValueError("a shape must bound something, got nothing")
+    return curves
 
 
 def _curve(segments: list[Any], factor: float, tolerance: float) -> Curve:

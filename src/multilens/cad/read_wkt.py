@@ -3,6 +3,7 @@
 import numpy as np
 import shapely
 from shapely import MultiPolygon, Polygon
+from shapely.errors import ShapelyError
 from shapely.geometry.base import BaseGeometry
 
 from multilens.cad.curve import Curve, tidy
@@ -30,8 +31,10 @@ def read_wkt(text: str, units: str | None) -> Drawing:
     parts = []
     for number, line in enumerate(lines, 1):
         try:
-            geometry = shapely.from_wkt(line)
-        except shapely.GEOSException as error:
+            # Of what is not finite numpy warns; a curve refuses it.
+            with np.errstate(invalid="ignore"):
+                geometry = shapely.from_wkt(line)
+        except ShapelyError as error:
             raise ValueError(f"line {number} must be well-known text, got {line[:40]!r}: {error}") from None
         parts.append(Part((KEEP_OUTS if parts else OUTLINE,), curves_of(geometry, factor, f"line {number}")))
     return Drawing(tuple(parts), y_up=True)
