@@ -42,7 +42,7 @@ def on_files(files: Files, config: MkDocsConfig) -> None:
 
 def on_page_markdown(markdown: str, page: Page, config: MkDocsConfig, files: Files) -> str:
     """Turn the links between files into those of the site."""
-    source = Path(page.file.abs_src_path)
+    source = Path(page.file.abs_src_path or DOCS / page.file.src_uri)
     here = Path(page.file.src_uri).parent
 
     def on_the_site(link: re.Match[str]) -> str:
@@ -60,4 +60,5 @@ def leads_to(page: Path, link: str) -> Path:
 
 def address(path: Path) -> str:
     """Give the name of a file on the site: pages of docs/ stand at its top, all others as in the repository."""
-    return path.relative_to(DOCS if path.is_relative_to(DOCS) else ROOT).as_posix()
+    path = path.relative_to(DOCS if path.is_relative_to(DOCS) else ROOT)
+    return (path.with_suffix(".md") if path.suffix == ".ipynb" else path).as_posix()

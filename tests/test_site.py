@@ -3,6 +3,7 @@
 It is built once, in a folder of its own, and its pages are read.
 """
 
+import json
 import os
 import re
 import subprocess
@@ -21,7 +22,7 @@ pytestmark = pytest.mark.xdist_group("site")
 
 @pytest.fixture(scope="module")
 def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Build the site and give its folder; a warning of MkDocs or its plugins is an error."""
+    """Build the site, which runs the notebook, and give its folder; a warning of MkDocs or its plugins is an error."""
     folder = tmp_path_factory.mktemp("site")
     build = subprocess.run(
         [sys.executable, "-m", "mkdocs", "build", "--strict", "--quiet", "--site-dir", str(folder)],
@@ -106,3 +107,16 @@ def test_every_page_and_study_is_on_the_site(site: Path):
 
 def test_no_page_tells_where_it_was_built(pages: dict[Path, Pieces]):
     assert not [page for page in pages if str(ROOT) in page.read_text(encoding="utf-8")]
+
+
+def test_the_notebook_was_run(site: Path, pages: dict[Path, Pieces]):
+    page = site / "notebook.html"
+    cells = json.loads((ROOT / "docs/notebook.ipynb").read_text(encoding="utf-8"))["cells"]
+    drawn = [cell for cell in cells if "".join(cell["source"]).endswith(".plot()")]
+    assert len([link for link in pages[page].loads if link.startswith("notebook_files/")]) == len(drawn) > 0
+    assert "Warning" not in page.read_text(encoding="utf-8")
+
+
+def test_no_output_is_kept_in_the_notebook():
+    cells = json.loads((ROOT / "docs/notebook.ipynb").read_text(encoding="utf-8"))["cells"]
+    assert not any(cell.get("outputs") or cell.get("execution_count") for cell in cells)
