@@ -78,16 +78,6 @@ def elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-@each(having("python"))
-def test_the_snippets_of_a_page_run(page: Path, capsys: pytest.CaptureFixture[str]):
-    names: dict[str, Any] = {"__name__": page.stem}
-    for block in blocks(page):
-        if block.language == "python":
-            exec(compile("\n" * (block.line - 1) + block.text, str(page), "exec"), names)
-    assert "ml" in names
-    capsys.readouterr()
-
-
 @dataclass(frozen=True)
 class Command:
     """A command line of a page, the exit code that the page promises and the output that it shows, None where it shows none."""
@@ -131,28 +121,37 @@ def form(output: str) -> str:
     return "\n".join(" ".join(NUMBER.sub("#", line).split()) for line in lines)
 
 
-@each(having("sh", "console"))
-def test_the_commands_of_a_page_do_what_it_says(
+@each(having("python", "sh", "console"))
+def test_a_page_does_what_it_says(
     page: Path, elsewhere: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ):
     monkeypatch.setattr("multilens.plot.figures.DOTS_PER_INCH", 20)
     for path, text in files(page).items():
         (elsewhere / path).parent.mkdir(parents=True, exist_ok=True)
         (elsewhere / path).write_text(text, encoding="utf-8")
+    names: dict[str, Any] = {"__name__": page.stem}
     for block in blocks(page):
+        if block.language == "python":
+            exec(compile("\n" * (block.line - 1) + block.text, str(page), "exec"), names)
+            assert "ml" in names
+            capsys.readouterr()
         for command in commands(block):
-            told = f"{page.name}, line {command.line}"
-            words = quickly(command)
-            with monkeypatch.context() as here:
-                here.setattr("sys.argv", ["multilens", *words])
-                if "-m" in words:
-                    here.setattr("multilens.runs._draw", lambda design, folder: None)
-                assert run_command(words) == command.code, told
-            printed = "".join(capsys.readouterr())
-            if command.output is not None and command.code:
-                assert printed.strip() == command.output.strip(), told
-            elif command.output is not None:
-                assert form(printed).strip() == form(command.output).strip(), told
+            run(command, f"{page.name}, line {command.line}", monkeypatch, capsys)
+
+
+def run(command: Command, told: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    """Run a command of a page and hold its exit code and its output against what the page shows."""
+    words = quickly(command)
+    with monkeypatch.context() as here:
+        here.setattr("sys.argv", ["multilens", *words])
+        if "-m" in words:
+            here.setattr("multilens.runs._draw", lambda design, folder: None)
+        assert run_command(words) == command.code, told
+    printed = "".join(capsys.readouterr())
+    if command.output is not None and command.code:
+        assert printed.strip() == command.output.strip(), told
+    elif command.output is not None:
+        assert form(printed).strip() == form(command.output).strip(), told
 
 
 @each(PAGES)

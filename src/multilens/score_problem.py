@@ -22,7 +22,7 @@ class ScoreProblem:
     Args:
         back: where lenses may stand.
         lenses: what is known of each, at least one; a lens without bounds of focus has the focus 1 mm.
-        score: from a batch of layouts to a tensor [*batch] or [*batch, m], differentiable by autograd; less is better.
+        score: from a batch of layouts to a tensor `[*batch]` or `[*batch, m]`, differentiable by autograd; less is better.
         gap: distance that the lenses' bodies keep from each other, mm, >= 0.
     """
 
