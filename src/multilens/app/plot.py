@@ -8,10 +8,10 @@ from multilens.app.refusal import RefusedError
 
 
 def plot_command(words: Sequence[str]) -> int:
-    """Draw the pictures of a run again from its design alone, and print their paths.
+    """Draw the pictures of a run again from its design alone, or those of a sweep from its table, and print their paths.
 
     Args:
-        words: the folder of the run.
+        words: the folder of the run or of the sweep.
 
     Returns:
         The exit code.
@@ -22,22 +22,40 @@ def plot_command(words: Sequence[str]) -> int:
     """
     if len(words) != 1 or words[0].startswith("-"):
         raise RefusedError(
-            f"plot must be given one run folder, as in multilens plot runs/demo, got {' '.join(words) or 'none'}"
+            "plot must be given one folder of a run or of a sweep, as in multilens plot runs/demo, "
+            f"got {' '.join(words) or 'none'}"
         )
     folder = Path(words[0])
-    if not (folder / "design.json").is_file():
+    is_run = (folder / "design.json").is_file()
+    if not (is_run or any(folder.glob("*/row.json"))):
         raise RefusedError(
-            f"plot: {folder} must be the folder of a run that found a design, there is no design.json in it"
+            f"plot: {folder} must be the folder of a run that found a design or of a sweep, "
+            "there is neither design.json in it nor row.json in a folder of it"
         )
     from multilens.app.loading import load_torch
 
     load_torch()
+    for path in _redrawn_run(folder) if is_run else _redrawn_sweep(folder):
+        print(path)
+    return DONE
+
+
+def _redrawn_run(folder: Path) -> list[Path]:
     from multilens.runs import redraw
 
     try:
         redraw(folder)
     except ValueError as error:
         raise RefusedError(f"plot: {error}") from None
-    for path in sorted([*folder.glob("*.svg"), *folder.glob("*.png")]):
-        print(path)
-    return DONE
+    return sorted([*folder.glob("*.svg"), *folder.glob("*.png")])
+
+
+def _redrawn_sweep(folder: Path) -> list[Path]:
+    from multilens.sweeps.pictures import draw_pictures
+
+    pictures = [folder / picture.name for picture in draw_pictures(folder)]
+    if not pictures:
+        raise RefusedError(
+            f"plot: {folder} must be the folder of a sweep that found a design, none of its jobs has one"
+        )
+    return pictures

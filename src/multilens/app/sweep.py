@@ -1,4 +1,4 @@
-"""The end of a sweep: what is still missing, agreement, and a table of all its jobs."""
+"""The end of a sweep: what is still missing, agreement, a table of all its jobs, and their pictures."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -8,6 +8,7 @@ from hydra.experimental.callback import Callback
 from omegaconf import DictConfig
 
 from multilens.app.agreeing import let_neighbours_agree
+from multilens.app.drawing import pictures_drawn
 from multilens.app.ending import BAD_INPUT, NOTHING_FOUND, SYSTEM_FAILED, tell
 from multilens.app.refusal import RefusedError
 from multilens.sweep_row import Cell
@@ -17,7 +18,7 @@ class SweepTable(Callback):
     """Writes and prints the table of a sweep when its last job has ended; Hydra calls it once, where the sweep was started."""
 
     def on_multirun_end(self, config: DictConfig, **kwargs: Any) -> None:
-        """Wait for what others compute, let neighbours agree, write the table of the jobs' folders and print it.
+        """Wait for what others compute, let neighbours agree, write the table of the jobs' folders, draw its pictures, print it.
 
         Raises:
             SystemExit: a job found nothing, code 3; the folder holds another sweep's job, code 2; something could not be read
@@ -39,7 +40,8 @@ class SweepTable(Callback):
             raise SystemExit(BAD_INPUT if isinstance(error, RefusedError) else SYSTEM_FAILED) from None
         print(aligned(without_empty_columns(cells(rows))))
         print(folder / CSV)
-        if not agreed:
+        drawn = pictures_drawn(folder)
+        if not (agreed and drawn):
             raise SystemExit(SYSTEM_FAILED)
         if any(row.score is None for row in rows):
             raise SystemExit(NOTHING_FOUND)

@@ -1,36 +1,23 @@
 """The back of a device to scale, as seen from behind, with a layout of lenses on it."""
 
 from functools import partial
-from math import cos, floor, hypot, log10, pi, sin
+from math import cos, hypot, pi, sin
 
 import numpy as np
 from jaxtyping import Float
 from matplotlib.axes import Axes
-from matplotlib.collections import LineCollection
-from matplotlib.patches import Circle
 
 from multilens.back import KeepOut
-from multilens.bands import winner_bands
 from multilens.constraints import body_radius
 from multilens.cues import Measurement
-from multilens.geometry.pairs import pair_indices
 from multilens.geometry.shape import Shape
 from multilens.layout import Layout
-from multilens.plot.canvas import Canvas, paper_size, shape_patch, text_size
+from multilens.plot.bare import best_pairs, draw_baselines, draw_keep_out, draw_lenses, draw_outline
+from multilens.plot.canvas import Canvas, paper_size, text_size
 from multilens.plot.lens_table import LensTable, lens_table
 from multilens.plot.placing import Box, Disc, Paper, around, leader_end
-from multilens.plot.style import (
-    FAINT,
-    INK,
-    PAPER,
-    RULE,
-    SMALL_FONT_SIZE,
-    ink_on,
-    lens_colour,
-    measurement_colour,
-    tint,
-)
-from multilens.plot.units import significant
+from multilens.plot.style import FAINT, INK, PAPER, SMALL_FONT_SIZE, ink_on, lens_colour, measurement_colour
+from multilens.plot.units import round_length, significant
 from multilens.problem import Problem
 from multilens.question import Question
 
@@ -80,10 +67,10 @@ def draw_back(ax: Axes, problem: Question, layout: Layout) -> None:
 
 def _draw(canvas: Canvas, paper: Paper, problem: Question, layout: Layout) -> None:
     best = best_pairs(problem, layout)
-    _draw_outline(canvas, problem.back.outline)
+    draw_outline(canvas, problem.back.outline)
     for keep_out in problem.back.keep_outs:
-        _draw_keep_out(canvas, keep_out)
-    _draw_lenses(canvas, problem, layout)
+        draw_keep_out(canvas, keep_out)
+    draw_lenses(canvas, problem, layout)
     _draw_scale_bar(canvas, paper, problem.back.outline)
     paper.discs += [
         Disc(*canvas.paper(*centre), radius * canvas.scale)
@@ -92,27 +79,13 @@ def _draw(canvas: Canvas, paper: Paper, problem: Question, layout: Layout) -> No
     paper.soft += [partial(_cost_of_rim, canvas, problem.back.outline)]
     paper.soft += [partial(_cost_of_shape, canvas, keep_out.shape) for keep_out in problem.back.keep_outs]
     if isinstance(problem, Problem):
-        _draw_baselines(canvas, layout, best)
+        draw_baselines(canvas, layout, best)
         _write_lengths(canvas, paper, layout, best)
         centres = [canvas.paper(*centre) for centre in layout.position.tolist()]
         paper.soft += [partial(_cost_of_line, *(centres[i] for i in pair.lenses)) for pair in best]
     _write_numbers(canvas, paper, layout)
     for keep_out in problem.back.keep_outs:
         _write_keep_out(canvas, paper, keep_out)
-
-
-def part_name(measurement: Measurement) -> str:
-    """Give the id that a lens or a pair has in an SVG file: lens-2, pair-1-2."""
-    kind = "lens" if len(measurement.lenses) == 1 else "pair"
-    return "-".join([kind, *(str(lens + 1) for lens in measurement.lenses)])
-
-
-def best_pairs(problem: Question, layout: Layout) -> tuple[Measurement, ...]:
-    """Give the pairs of lenses that are best at some depth, the one that is so from the nearest depth first."""
-    if not isinstance(problem, Problem):
-        return ()
-    winners = [band.measurement for band in winner_bands(problem, layout)]
-    return tuple(dict.fromkeys(winner for winner in winners if len(winner.lenses) == 2))
 
 
 def _signs(problem: Question, layout: Layout, best: tuple[Measurement, ...]) -> tuple[tuple[str, str], ...]:
@@ -160,29 +133,6 @@ def _arrange(ax: Axes, outline: Shape, table: LensTable) -> tuple[Canvas, Paper,
     return canvas, Paper(Box(from_left + usable[0] / 2, from_top + usable[1] / 2, *usable)), corner
 
 
-def _draw_outline(canvas: Canvas, outline: Shape) -> None:
-    canvas.axes.add_patch(shape_patch(outline, facecolor="#f4f4f2", edgecolor=INK, linewidth=1.4, zorder=1))
-
-
-def _draw_keep_out(canvas: Canvas, keep_out: KeepOut) -> None:
-    hatch = {"facecolor": PAPER, "edgecolor": "#a3a3a3", "hatch": "//////", "linewidth": 0.8}
-    canvas.axes.add_patch(shape_patch(keep_out.shape, zorder=2, **hatch))
-    if keep_out.clearance > 0:
-        grown = Shape(keep_out.shape.core, keep_out.shape.radius + keep_out.clearance)
-        look = {"facecolor": "none", "edgecolor": FAINT, "linestyle": ":", "linewidth": 0.7}
-        canvas.axes.add_patch(shape_patch(grown, zorder=2, **look))
-
-
-def _draw_lenses(canvas: Canvas, problem: Question, layout: Layout) -> None:
-    bodies = body_radius(layout, problem.lenses).tolist()
-    for i, (centre, body) in enumerate(zip(layout.position.tolist(), bodies, strict=True)):
-        colour = lens_colour(i)
-        look = {"facecolor": tint(colour, 0.78), "edgecolor": colour, "linewidth": 0.9}
-        canvas.axes.add_patch(Circle(centre, body, zorder=3, gid=f"lens-{i + 1}", **look))
-        radius = layout.aperture_radius[i].item()
-        canvas.axes.add_patch(Circle(centre, radius, facecolor=colour, edgecolor="none", zorder=6))
-
-
 def _write_numbers(canvas: Canvas, paper: Paper, layout: Layout) -> None:
     """Write each lens' number in its aperture, else in its body clear of a baseline, else beside it with a leader."""
     for i, disc in enumerate(paper.discs):
@@ -206,17 +156,6 @@ def _ring(centre: tuple[float, float], radius: float) -> list[tuple[float, float
     """Give places around a point, above it first."""
     angles = [pi * k / 4 for k in (6, 2, 0, 4, 7, 5, 1, 3)]
     return [(centre[0] + radius * cos(angle), centre[1] + radius * sin(angle)) for angle in angles]
-
-
-def _draw_baselines(canvas: Canvas, layout: Layout, best: tuple[Measurement, ...]) -> None:
-    centres = [canvas.paper(*centre) for centre in layout.position.tolist()]
-    # As one artist: twelve lenses have 66 pairs.
-    ends = [[canvas.data(*centres[i]), canvas.data(*centres[j])] for i, j in pair_indices(layout.count).T.tolist()]
-    canvas.axes.add_collection(LineCollection(ends, colors=RULE, linewidths=0.6, zorder=2.5))
-    for pair in best:
-        start, end = (centres[i] for i in pair.lenses)
-        look = {"color": measurement_colour(pair), "linewidth": 2.4, "solid_capstyle": "butt"}
-        canvas.line(start, end, zorder=4, gid=part_name(pair), **look)
 
 
 def _write_lengths(canvas: Canvas, paper: Paper, layout: Layout, best: tuple[Measurement, ...]) -> None:
@@ -292,7 +231,7 @@ def _draw_leader(canvas: Canvas, box: Box, anchor: tuple[float, float], radius: 
 
 def _draw_scale_bar(canvas: Canvas, paper: Paper, outline: Shape) -> None:
     box = canvas.paper_box(outline)
-    length = _round_length((outline.bounds[2] - outline.bounds[0]) / 3)
+    length = round_length((outline.bounds[2] - outline.bounds[0]) / 3)
     left, y = box.x - box.width / 2, paper.edge.y + paper.edge.height / 2 - SCALE_BAR_HEIGHT + 4
     right = left + length * canvas.scale
     canvas.line((left, y), (right, y), color=INK, linewidth=1.6, solid_capstyle="butt")
@@ -303,9 +242,3 @@ def _draw_scale_bar(canvas: Canvas, paper: Paper, outline: Shape) -> None:
     middle = max((left + right) / 2, left + width / 2)
     canvas.write(middle, y + 4 + height / 2, words, fontsize=SMALL_FONT_SIZE)
     paper.boxes.append(Box(middle, y + 4 + height / 2 - 4, max(width, right - left), height + 10))
-
-
-def _round_length(longest: float) -> float:
-    """Give the largest of 1, 2, 5, 10, ... (and 0.5, 0.2, ...) mm that is not longer."""
-    power = 10.0 ** floor(log10(longest))
-    return max(digit * power for digit in (1, 2, 5) if digit * power <= longest)

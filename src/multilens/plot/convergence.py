@@ -3,10 +3,10 @@
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
-from matplotlib.ticker import FuncFormatter
 
 from multilens.convergence import Convergence
 from multilens.metrics import Metric
+from multilens.plot.axis import draw_grid, tick_in_plain_numbers
 from multilens.plot.style import FAINT, INK, LENS_COLOURS, SMALL_FONT_SIZE
 from multilens.plot.units import significant
 
@@ -47,12 +47,11 @@ def draw_convergence(ax: Axes, convergence: Convergence, score: float, metric: M
     if metric is not None:
         ax.set_yscale("log")
         ax.set_ylim(*_limits(heights, polished[feasible], float(final)))
-        _tick_in_plain_numbers(ax)
+        tick_in_plain_numbers(ax.yaxis)
     ax.set_xlabel("step of the interior-point method (in the first steps lenses may overlap)")
     read = "score" if metric is None else metric.name
     ax.set_ylabel(read + ("" if metric is None else f" ({metric.unit})"))
-    ax.grid(True, which="major", color="#ececec", linewidth=0.8)
-    ax.set_axisbelow(True)
+    draw_grid(ax)
     unit = "" if metric is None else f" {metric.unit}"
     _draw_legend(ax, convergence, int(feasible.sum()), f"{significant(float(final), 4)}{unit}")
 
@@ -68,15 +67,6 @@ def _limits(heights: np.ndarray, polished: np.ndarray, final: float) -> tuple[fl
     if not len(every):
         return 0.1, 10.0
     return every.min() / 1.15, every.max() * 1.15
-
-
-def _tick_in_plain_numbers(ax: Axes) -> None:
-    plain = FuncFormatter(lambda value, _: f"{value:g}")
-    ax.yaxis.set_major_formatter(plain)
-    low, high = ax.get_ylim()
-    # Of a short range every digit is named, of a longer one three, and of a long one the powers of ten alone.
-    named = "123456789" if high / low < 8 else "125" if high / low < 20 else ""
-    ax.yaxis.set_minor_formatter(FuncFormatter(lambda value, _: f"{value:g}" if f"{value:.0e}"[0] in named else ""))
 
 
 def _draw_legend(ax: Axes, convergence: Convergence, feasible: int, final: str) -> None:

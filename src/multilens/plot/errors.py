@@ -16,6 +16,7 @@ from multilens.bands import NOTHING, Band, dense_depths, errors_at, winner_bands
 from multilens.cues import Measurement
 from multilens.fusion import Best
 from multilens.layout import Layout
+from multilens.plot.axis import draw_grid
 from multilens.plot.canvas import paper_size, text_size
 from multilens.plot.placing import spread
 from multilens.plot.style import FAINT, INK, SMALL_FONT_SIZE, ink_on, measurement_colour, measurement_dashes
@@ -89,8 +90,7 @@ def draw_errors(ax: Axes, problem: Problem, layout: Layout) -> None:
         ax.yaxis.set_major_locator(LogLocator(subs=ROUND_DIGITS if top < FEW_DECADES * bottom else (1.0,)))
         ax.yaxis.set_minor_formatter(NullFormatter())
     ax.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-    ax.grid(True, which="major", color="#ececec", linewidth=0.8)
-    ax.set_axisbelow(True)
+    draw_grid(ax)
     _draw_legend(ax, problem, rmse, beside_the_best)
 
 

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 from matplotlib.axes import Axes
 
 from multilens.layout import Layout
-from multilens.plot.back import MARGIN, SCALE_BAR_HEIGHT, best_pairs, draw_back, part_name
+from multilens.plot.back import MARGIN, SCALE_BAR_HEIGHT, draw_back
+from multilens.plot.bare import best_pairs, part_name
 from multilens.plot.errors import curve_name, draw_errors, draw_winners
 from multilens.plot.style import INK, WARNING, style
 from multilens.plot.svg import inline_svg, page_figure

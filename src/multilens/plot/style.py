@@ -95,6 +95,12 @@ def tint(colour: str, white: float) -> str:
     return to_hex((red, green, blue))
 
 
+def shade(colour: str, black: float) -> str:
+    """Mix a colour with black, for words in a colour that is too light for them; 0 leaves it, 1 is black."""
+    red, green, blue = ((1 - black) * part for part in to_rgb(colour))
+    return to_hex((red, green, blue))
+
+
 def ink_on(colour: str) -> str:
     """Give the ink, dark or white, that contrasts most with a colour, by relative luminance (WCAG 2)."""
     linear = [part / 12.92 if part <= 0.04045 else ((part + 0.055) / 1.055) ** 2.4 for part in to_rgb(colour)]

@@ -47,3 +47,9 @@ def significant(number: float, digits: int = 3) -> str:
         return f"{number:.{digits}g}"
     rounded = float(f"{number:.{digits - 1}e}")
     return f"{rounded:.{max(0, digits - 1 - floor(log10(abs(rounded))))}f}"
+
+
+def round_length(longest: float) -> float:
+    """Give the largest of 1, 2, 5, 10, ... (and 0.5, 0.2, ...) mm that is not longer."""
+    power = 10.0 ** floor(log10(longest))
+    return max(digit * power for digit in (1, 2, 5) if digit * power <= longest)

@@ -1,0 +1,23 @@
+"""The end of a sweep: its pictures are drawn, and their paths printed."""
+
+from pathlib import Path
+
+from multilens.app.ending import tell
+
+
+def pictures_drawn(folder: Path) -> bool:
+    """Draw the pictures of a sweep and print their paths.
+
+    Returns:
+        Whether that could be done; if not, one line on stderr has said why, and the tables are there without them.
+    """
+    from multilens.sweeps.pictures import draw_pictures
+
+    try:
+        pictures = draw_pictures(folder)
+    except OSError as error:
+        tell(f"the pictures cannot be drawn: {error}")
+        return False
+    for picture in pictures:
+        print(folder / picture.name)
+    return True
