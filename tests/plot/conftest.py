@@ -1,7 +1,10 @@
 """Backs and layouts that are hard to draw, and what is asked of every picture."""
 
+from itertools import combinations, product
+
 import pytest
 import shapely
+from matplotlib.text import Text
 
 from multilens.back import Back
 from multilens.cues import LimitedStereo, PairLimits
@@ -11,6 +14,7 @@ from multilens.layout import Layout
 from multilens.lens import Lens
 from multilens.problem import Problem
 from multilens.score_problem import ScoreProblem
+from multilens.sweep_row import SweepRow
 
 NOISE = 0.2 * 1.22e-3
 FOCI = [4820, 3110, 2050, 1400, 930, 620, 410, 280, 350, 240, 700, 1100]
@@ -85,3 +89,75 @@ def case(request):
 @pytest.fixture
 def cases():
     return CASES
+
+
+def swept(keys, error, unit=("RMSE", "mm"), bound=0.9):
+    """Give rows of a sweep over every combination of values, each with a back and apertures that its settings tell.
+
+    `error` gives the figure for settings, or the status of a job that found nothing.
+    """
+    rows = []
+    for job, values in enumerate(product(*keys.values())):
+        settings = dict(zip(keys, values, strict=True))
+        figure = error(settings)
+        if isinstance(figure, str):
+            rows.append(SweepRow(job, tuple(settings.items()), figure, "no room"))
+            continue
+        metric = unit(settings) if callable(unit) else unit
+        count = int(settings.get("lenses.count", 2))
+        found = {"metric": metric[0], "unit": metric[1], "figure": figure, "score": figure**2, "rmse": figure}
+        proved = None if bound is None else bound * figure**2
+        areas = {"aperture_area": 11.65 * count, "back_area": float(settings.get("back.outline.width", 50)) ** 2}
+        rows.append(
+            SweepRow(
+                job, tuple(settings.items()), "complete", lens_count=count, bound=proved, measured=1.0, **found, **areas
+            )
+        )
+    return rows
+
+
+def words_of(figure):
+    unseen = set()
+    for axis in (each for ax in figure.axes for each in (ax.xaxis, ax.yaxis)):
+        low, high = sorted(axis.get_view_interval())
+        margin = 1e-9 * (high - low)
+        for tick in [*axis.get_major_ticks(), *axis.get_minor_ticks()]:
+            # Ticks off the axis, and all of one that is hidden, are there and not drawn.
+            if not low - margin <= tick.get_loc() <= high + margin or not axis.axes.axison:
+                unseen |= {tick.label1, tick.label2}
+    return [text for text in figure.findobj(Text) if text.get_text() and text.get_visible() and text not in unseen]
+
+
+def overlapping(texts):
+    """Give the pairs of words that cover each other."""
+    boxes = {text: text.get_window_extent() for text in texts}
+    return [
+        (a.get_text(), b.get_text())
+        for a, b in combinations(boxes, 2)
+        if min(boxes[a].x1, boxes[b].x1) - max(boxes[a].x0, boxes[b].x0) > 0.5
+        and min(boxes[a].y1, boxes[b].y1) - max(boxes[a].y0, boxes[b].y0) > 0.5
+    ]
+
+
+@pytest.fixture(name="swept")
+def swept_fixture():
+    return swept
+
+
+@pytest.fixture
+def clear():
+    """What is asked of a whole figure: no words cut by its edge, none over others."""
+
+    def check(figure):
+        figure.draw_without_rendering()
+        texts = words_of(figure)
+        whole = figure.bbox
+        for text in texts:
+            box = text.get_window_extent()
+            assert box.x0 >= 0, text
+            assert box.y0 >= 0, text
+            assert box.x1 <= whole.x1, text
+            assert box.y1 <= whole.y1, text
+        assert not overlapping(texts)
+
+    return check

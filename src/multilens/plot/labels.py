@@ -6,6 +6,8 @@ from itertools import pairwise
 from math import hypot
 from typing import Any
 
+import numpy as np
+from jaxtyping import Float
 from matplotlib.axes import Axes
 
 from multilens.plot.canvas import POINTS_PER_INCH, paper_size, text_size
@@ -47,6 +49,11 @@ class Labels:
         for start, end in pairwise(corners):
             self._paper.soft.append(partial(_cost_of_line, start, end))
 
+    def rather_not_on_points(self, places: Sequence[tuple[float, float]]) -> None:
+        """Keep labels off these points of the data where there is room beside them."""
+        if places:
+            self._paper.soft.append(partial(_cost_of_points, np.array([self.paper(*place) for place in places])))
+
     def write(self, x: float, y: float, words: str, radius: float = 4.0, reach: float = 60.0, **look: Any) -> bool:
         """Write words beside a point of the data, or nothing where there is no room; give whether they were written.
 
@@ -82,6 +89,11 @@ class Labels:
             start = (anchor[0] + share * (end[0] - anchor[0]), anchor[1] + share * (end[1] - anchor[1]))
             x, y = ([a / self.width for a in (start[0], end[0])], [1 - b / self.height for b in (start[1], end[1])])
             self.axes.plot(x, y, transform=self.axes.transAxes, color=FAINT, linewidth=0.6, zorder=7)
+
+
+def _cost_of_points(points: Float[np.ndarray, "n 2"], box: Box) -> float:
+    apart = np.abs(points - (box.x, box.y)) < (box.width / 2, box.height / 2)
+    return LINE_COST * float(apart.all(axis=1).sum())
 
 
 def _cost_of_line(start: tuple[float, float], end: tuple[float, float], box: Box) -> float:

@@ -54,7 +54,7 @@ class Cost:
 
     def of(self, row: SweepRow) -> float:
         """Give what a row that has a design costs."""
-        return float(f"{getattr(row, self.field):.{DIGITS}g}")
+        return _rounded(getattr(row, self.field))
 
 
 COSTS = (
@@ -78,7 +78,7 @@ def front_figure(rows: Sequence[SweepRow]) -> Figure | None:
     names, own = short_names(keys), [key for key in keys if not is_asked(key)]
     told = ", ".join(names[key] for key in own)
     notes = [
-        f"labelled: what no other job beats in both error and cost; a label tells {told}",
+        f"labelled: what no other job beats in both error and cost; a label tells {told} (+ how many more are alike)",
         without_design(rows),
         left_out(len(several) - len(panels), "questions"),
     ]
@@ -114,8 +114,7 @@ def front(costs: Sequence[float], errors: Sequence[float]) -> list[int]:
 
 def cheapest(rows: Sequence[SweepRow], cost: Cost) -> list[SweepRow]:
     """Give the rows that no other beats in cost and error."""
-    errors = [float(f"{figure_of(row):.{DIGITS}g}") for row in rows]
-    return [rows[k] for k in front([cost.of(row) for row in rows], errors)]
+    return [rows[k] for k in front(*_columns(rows, cost))]
 
 
 def draw_front(ax: Axes, quantity: str, rows: Sequence[SweepRow], cost: Cost, keys: Sequence[str]) -> int:
@@ -135,7 +134,8 @@ def draw_front(ax: Axes, quantity: str, rows: Sequence[SweepRow], cost: Cost, ke
     ax.set_xlabel(cost.words)
     ax.set_ylabel(quantity)
     _set_limits(ax, rows, cost)
-    others = [row for row in rows if row not in best]
+    beaten = {row.job for row in rows} - {row.job for row in best}
+    others = [row for row in rows if row.job in beaten]
     ax.plot(*_columns(others, cost), linestyle="none", marker="o", markersize=4, color=DOMINATED, zorder=2)
     look = {"color": FRONT, "linewidth": 1.2, "drawstyle": "steps-post", "marker": "o", "markersize": 6}
     ax.plot(*_columns(best, cost), zorder=3, **look)
@@ -144,8 +144,7 @@ def draw_front(ax: Axes, quantity: str, rows: Sequence[SweepRow], cost: Cost, ke
         labels.keep_off(*point, 4.0)
     corners = [(x, y) for (x0, y), (x1, _) in pairwise(zip(*at, strict=True)) for x in (x0, x1)]
     labels.rather_not_on(corners)
-    for row in others:
-        labels.rather_not_on([(cost.of(row), figure_of(row))] * 2)
+    labels.rather_not_on_points(list(zip(*_columns(others, cost), strict=True)))
     alike: dict[tuple[float, float], list[SweepRow]] = {}
     for row, point in zip(best, zip(*at, strict=True), strict=True):
         alike.setdefault(point, []).append(row)
@@ -184,4 +183,8 @@ def _set_limits(ax: Axes, rows: Sequence[SweepRow], cost: Cost) -> None:
 
 
 def _columns(rows: Sequence[SweepRow], cost: Cost) -> tuple[list[float], list[float]]:
-    return [cost.of(row) for row in rows], [figure_of(row) for row in rows]
+    return [cost.of(row) for row in rows], [_rounded(figure_of(row)) for row in rows]
+
+
+def _rounded(number: float) -> float:
+    return float(f"{number:.{DIGITS}g}")
