@@ -140,4 +140,4 @@ def test_a_saved_layout_can_be_asked_for_another_metric(saved: Path, capsys: pyt
 
 def test_a_scene_means_nothing_without_its_cues(saved: Path, capsys: pytest.CaptureFixture[str]):
     assert run_command(["evaluate", str(saved), "scene=dim"]) == 2
-    assert "unless cues=... comes with it" in capsys.readouterr().err
+    assert "add cues=photometric" in capsys.readouterr().err

@@ -16,12 +16,28 @@ def test_help_loads_nothing_heavy(tmp_path: Path):
     asked = (
         "import sys\nfrom multilens.app import main\nsys.argv = ['multilens', '--help']\n"
         "try: main()\nexcept SystemExit as left: assert left.code == 0\n"
-        "print(sorted({'torch', 'shapely', 'scipy', 'matplotlib', 'numpy'} & set(sys.modules)))"
+        "heavy = {'torch', 'shapely', 'scipy', 'matplotlib', 'numpy', 'hydra', 'omegaconf', 'rich', 'multilens.app.build'}\n"
+        "print(sorted(heavy & set(sys.modules)))"
     )
     done = subprocess.run([sys.executable, "-c", asked], cwd=tmp_path, capture_output=True, text=True, check=True)
     assert done.stdout.splitlines()[-1] == "[]"
-    assert "multilens experiment=demo" in done.stdout
+    assert "multilens design experiment=demo" in done.stdout
     assert "penalty: area, distance" in done.stdout
+
+
+def test_importing_the_package_loads_nothing_heavy():
+    asked = "import sys, multilens; print(sorted({'torch', 'numpy', 'multilens.problem', 'hydra'} & set(sys.modules)))"
+    done = subprocess.run([sys.executable, "-c", asked], capture_output=True, text=True, check=True)
+    assert done.stdout == "[]\n"
+
+
+def test_output_that_nobody_reads_ends_quietly(tmp_path: Path):
+    began = [sys.executable, "-c", MAIN, "--help"]
+    with subprocess.Popen(began, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        assert process.stdout is not None
+        assert process.stderr is not None
+        process.stdout.close()
+        assert (process.stderr.read(), process.wait(timeout=60)) == ("", 141)
 
 
 @pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])

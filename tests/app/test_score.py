@@ -11,7 +11,7 @@ from multilens.app import build
 from multilens.app.compose import open_hydra
 from multilens.app.refusal import RefusedError
 from multilens.app.schema import DepthConfig
-from multilens.app.schema_score import FusionConfig, FusionName, HistogramConfig, MetricConfig, MetricName
+from multilens.app.schema_score import ErrorName, FusionConfig, FusionName, HistogramConfig, MetricConfig, MetricName
 from multilens.app.score import build_depths, build_fusion, build_metric, check_score
 
 MEAN, WORST, RELATIVE = (MetricName[word] for word in ("mean_square", "worst_case", "relative"))
@@ -25,7 +25,7 @@ def depth(edges: list[float], shares: list[float]) -> DepthConfig:
 def test_words_become_metrics():
     assert build_metric(MetricConfig(RELATIVE)) == ml.Relative()
     assert build_metric(MetricConfig(WORST)) == ml.WorstCase()
-    assert build_metric(MetricConfig(WORST, RELATIVE)) == ml.WorstCase(ml.Relative())
+    assert build_metric(MetricConfig(WORST, ErrorName["relative"])) == ml.WorstCase(ml.Relative())
 
 
 def test_a_word_becomes_a_fusion():
@@ -57,8 +57,7 @@ def test_a_histogram_may_be_given_on_the_command_line():
 @pytest.mark.parametrize(
     ("metric", "fusion", "asked", "words"),
     [
-        (MetricConfig(MEAN, RELATIVE), FusionConfig(FusionName.best), PLAIN, "metric.of"),
-        (MetricConfig(WORST, WORST), FusionConfig(FusionName.best), PLAIN, "metric.of"),
+        (MetricConfig(MEAN, ErrorName["relative"]), FusionConfig(FusionName.best), PLAIN, "metric.of"),
         (MetricConfig(MEAN), FusionConfig(FusionName.best, 0.0), PLAIN, "fusion.guess must be > 0 mm"),
         (MetricConfig(MEAN), FusionConfig(FusionName.best, torch.inf), PLAIN, "fusion.guess"),
         (MetricConfig(MEAN), FusionConfig(FusionName.best), depth([100, 400], [1, 1]), "one edge more"),

@@ -3,6 +3,7 @@
 from argparse import Namespace
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +19,7 @@ from multilens.app.compose import CONFIG_NAME, config_loader, open_hydra
 from multilens.app.keys import is_known, no_such_option, unknown_key
 from multilens.app.launcher import refuse_foreign_commands, refuse_without_cluster
 from multilens.app.refusal import RefusedError, one_line
+from multilens.app.schema import Config
 from multilens.app.sweep_folder import Sweep, claim_of, plain, sweep_folder, words_of
 from multilens.app.telling import told_in_one_line
 from multilens.app.yaml_limits import refuse_wild_folders
@@ -42,7 +44,22 @@ LOGGING = ("job_logging", "hydra_logging")
 STREAMS = ("ext://sys.stdout", "ext://sys.stderr")
 
 
-def check_command_line(arguments: Namespace) -> Sweep | None:
+@dataclass(frozen=True)
+class Checked:
+    """What a command line would run.
+
+    Args:
+        configs: of each job that was looked at: by "" the one with the first values, by key=value that with another one.
+        swept: the keys of which there are several values.
+        sweep: the sweep and its folder; None where it is none.
+    """
+
+    configs: dict[str, Config]
+    swept: tuple[str, ...]
+    sweep: Sweep | None
+
+
+def check_command_line(arguments: Namespace) -> Checked:
     """Compose what would be run, build it as far as torch is not needed, and look at the folder it would go to.
 
     For a sweep every value of every swept key is looked at, each with the first values of the others.
@@ -51,7 +68,7 @@ def check_command_line(arguments: Namespace) -> Sweep | None:
         arguments: as Hydra's parser gives them.
 
     Returns:
-        The sweep and its folder; None where it is none.
+        What would be run.
 
     Raises:
         RefusedError: something cannot be run; one line.
@@ -74,12 +91,15 @@ def check_command_line(arguments: Namespace) -> Sweep | None:
                     f"{_line(override)}: several values need multilens -m, or [...] around them where a list is meant"
                 )
             _refuse_used("hydra.run.dir", _folder_of("hydra.run.dir", first))
-        configs: dict[str, dict[str, Any]] = {}
+        configs: dict[str, Config] = {}
+        whole: dict[str, dict[str, Any]] = {}
         for changed, lines in _each_value(overrides, swept, loader):
             config = composed(config_name, lines)
-            build.check(build.typed(config))
-            configs[changed] = plain(config)
-    return Sweep(folder, _claim(overrides, swept, configs)) if is_sweep else None
+            configs[changed] = build.typed(config)
+            build.check(configs[changed])
+            whole[changed] = plain(config)
+    sweep = Sweep(folder, _claim(overrides, swept, whole)) if is_sweep else None
+    return Checked(configs, tuple(override.get_key_element() for override in swept), sweep)
 
 
 def _claim(overrides: list[Override], swept: list[Override], configs: dict[str, dict[str, Any]]) -> Claim:

@@ -1,19 +1,32 @@
 """The commands, and what each way to end them says and exits with."""
 
+import os
 import signal
+import sys
 import threading
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from importlib import import_module
-from importlib.metadata import version
-from types import FrameType
+from types import FrameType, ModuleType
 from typing import NoReturn
 
-from multilens.app.ending import BAD_INPUT, DONE, INTERRUPTED, SYSTEM_FAILED, TERMINATED, TerminatedError, tell
-from multilens.app.refusal import RefusedError
+from multilens.app.ending import (
+    BAD_INPUT,
+    BROKEN_PIPE,
+    DONE,
+    INTERRUPTED,
+    SYSTEM_FAILED,
+    TERMINATED,
+    TerminatedError,
+    tell,
+)
+from multilens.app.help import FLAGS, help_text
+from multilens.app.presets import config_folder, preset_groups
+from multilens.app.refusal import RefusedError, meant
 
-COMMANDS = ("design", "evaluate", "export", "least", "plot", "report")
-"""What the first word may be; without one of them it is design. NAME is `name_command` of the module `multilens.app.name`."""
+COMMANDS = ("design", "evaluate", "export", "least", "plot", "report", "validate-config")
+"""What the first word may be; key=value or a flag in its place means design. NAME is `name_command` of the module
+`multilens.app.name`, and its `USAGE` is what `multilens NAME --help` prints."""
 
 
 def run_command(given: list[str]) -> int:
@@ -27,11 +40,13 @@ def run_command(given: list[str]) -> int:
     """
     try:
         with _terminated_by_signal():
-            if "--version" in given:
-                print(f"multilens {version('multilens')}")
-                return DONE
-            named = given[:1] and given[0] in COMMANDS
-            return _command(given[0])(given[1:]) if named else _command("design")(given)
+            code = _run(given)
+            sys.stdout.flush()
+            return code
+    except BrokenPipeError:
+        # Whoever read the output has seen enough. What Python still holds of it must not be written at its end.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return BROKEN_PIPE
     except RefusedError as refusal:
         reason, code = refusal, BAD_INPUT
     except KeyboardInterrupt:
@@ -44,10 +59,47 @@ def run_command(given: list[str]) -> int:
     return code
 
 
-def _command(name: str) -> Callable[[Sequence[str]], int]:
+def _run(given: list[str]) -> int:
+    first, rest = next(iter(given), ""), given[1:]
+    named, helped = first in COMMANDS, any(word in FLAGS for word in given)
+    if "--version" in given:
+        from importlib.metadata import version
+
+        print(f"multilens {version('multilens')}")
+    elif named and helped:
+        print(_module(first).USAGE)
+    elif not given or helped:
+        print(help_text(given))
+    elif any(word.startswith("query=") for word in given):
+        from multilens.app.completion import complete
+
+        complete(given, COMMANDS)
+    else:
+        _refuse_unknown_command(first)
+        return _command(first)(rest) if named else _command("design")(given)
+    return DONE
+
+
+def _refuse_unknown_command(first: str) -> None:
+    """Refuse a first word that is neither a command nor anything of Hydra's: key=value, ~key or a flag."""
+    if first in COMMANDS or "=" in first or first.startswith(("-", "~")):
+        return
+    begun = next((name for name in COMMANDS if name.startswith(first)), None)
+    near = f"; did you mean {begun}?" if begun else meant(first, COMMANDS)
+    if first in preset_groups([config_folder()])["experiment"]:
+        near = f"; did you mean experiment={first}?"
+    raise RefusedError(
+        f"the first word must be a command ({', '.join(COMMANDS)}) or key=value, got {first}{near or '; see multilens --help'}"
+    )
+
+
+def _module(name: str) -> ModuleType:
     """Load what runs a command, and nothing of the others."""
-    module = name.replace("-", "_")
-    return getattr(import_module(f"multilens.app.{module}"), f"{module}_command")
+    return import_module(f"multilens.app.{name.replace('-', '_')}")
+
+
+def _command(name: str) -> Callable[[Sequence[str]], int]:
+    return getattr(_module(name), f"{name.replace('-', '_')}_command")
 
 
 @contextmanager

@@ -1,4 +1,4 @@
-"""Where the configuration lies, and Hydra set up to compose it as its own command line would."""
+"""Hydra, set up to compose a configuration as its own command line would."""
 
 from argparse import Namespace
 from collections.abc import Iterator
@@ -12,17 +12,11 @@ from hydra.core.config_loader import ConfigLoader
 from hydra.core.config_search_path import SearchPathQuery
 from hydra.core.global_hydra import GlobalHydra
 
+from multilens.app.presets import config_folder
 from multilens.app.schema import register
 
 CONFIG_NAME = "config"
 VERSION_BASE = "1.3"
-
-
-def config_folder() -> Path:
-    """Give the folder of the presets: inside the package when installed from a wheel, beside src in a checkout."""
-    here = Path(__file__).resolve()
-    packaged = here.parents[1] / "conf"
-    return packaged if packaged.is_dir() else here.parents[3] / "conf"
 
 
 @contextmanager

@@ -3,14 +3,37 @@
 import inspect
 import os
 import sys
-from argparse import ArgumentParser
+from argparse import ArgumentParser, Namespace
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, NoReturn
 
+from multilens.app.answer import FLAG, without_flag
 from multilens.app.ending import DONE, SYSTEM_FAILED
 from multilens.app.refusal import RefusedError, one_line
+
+USAGE = """\
+multilens design key=value ...    search for a design, and save a run folder
+
+`design` may be left out. The words are Hydra's: group=option takes a preset, key=value sets one key, +key=value adds one,
+~key takes one away. `multilens --help` lists the presets, `multilens --cfg job experiment=NAME` the keys.
+
+Options
+  -m, --multirun           one design for every combination of values, as in lenses.count=2,3,4, and a table of all
+  --json                   print the design and the paths of its files as JSON, and nothing else
+  --cfg job                print the configuration that would be run, and run nothing
+  --config-dir FOLDER      take presets of your own as well
+  hydra.run.dir=FOLDER     where the run folder goes (runs/NAME/DATE_TIME)
+  hydra.sweep.dir=FOLDER   where the folder of a sweep goes (sweeps/NAME/DATE_TIME)
+
+Examples
+  multilens design experiment=demo
+  multilens design experiment=phone_back lenses.count=3 search=quick hydra.run.dir=runs/three
+  multilens design experiment=demo search.time_limit=20 --json
+  multilens design -m experiment=phone_back lenses.count=2,3,4,5
+
+Exit code 3: nothing fits, or nothing was found. `multilens validate-config` tells without a search what it can."""
 
 
 def design_command(words: Sequence[str]) -> int:
@@ -27,31 +50,33 @@ def design_command(words: Sequence[str]) -> int:
         OSError: a folder cannot be written.
     """
     import hydra
-    from hydra._internal.utils import get_args_parser
 
-    from multilens.app.compose import CONFIG_NAME, VERSION_BASE, config_folder
+    from multilens.app.compose import CONFIG_NAME, VERSION_BASE
     from multilens.app.launcher import failures_told
-    from multilens.app.run import run_job
+    from multilens.app.presets import config_folder
+    from multilens.app.run import run_job, run_job_for_programs
     from multilens.app.schema import register
     from multilens.app.sweep import SweepTable
     from multilens.app.telling import told_in_one_line
     from multilens.app.yaml_limits import refuse_wild_folders
 
-    parser = get_args_parser()
-    _tell_in_one_line(parser)
-    arguments = parser.parse_args(list(words))
-    if arguments.experimental_rerun is not None:
-        raise RefusedError("--experimental-rerun loads a pickle, which can run any code: it must not be given")
+    as_json, words = without_flag(words)
+    arguments = read_arguments(words)
+    flags = _flags(words, arguments)
+    if as_json and arguments.multirun:
+        raise RefusedError(
+            f"{FLAG} is for one design: of a sweep, table.jsonl in its folder has a JSON object for each job"
+        )
     if not (arguments.help or arguments.hydra_help or arguments.shell_completion or arguments.info or arguments.cfg):
         from multilens.app.check import check_command_line
 
-        sweep = check_command_line(arguments)
+        sweep = check_command_line(arguments).sweep
         if sweep is not None:
             from multilens.app.sweep_folder import open_sweep
 
             open_sweep(sweep)
             # Told outright, every worker finds the same folder, whatever its job is called.
-            words = [*words, _override("hydra.sweep.dir", sweep.folder)]
+            arguments.overrides.append(_override("hydra.sweep.dir", sweep.folder))
     else:
         refuse_wild_folders(arguments)
     register()
@@ -59,9 +84,13 @@ def design_command(words: Sequence[str]) -> int:
     ours = f"{SweepTable.__module__}.{SweepTable.__qualname__}"
     takes_list = "execution_whitelist" in inspect.signature(hydra.main).parameters
     options: dict[str, Any] = {"execution_whitelist": [ours]} if takes_list else {"version_base": VERSION_BASE}
-    start = hydra.main(config_path=str(config_folder()), config_name=CONFIG_NAME, **options)(run_job)
+    start = hydra.main(config_path=str(config_folder()), config_name=CONFIG_NAME, **options)(
+        run_job_for_programs if as_json else run_job
+    )
     try:
-        with _hydra_raises(), _in_argv(words), told_in_one_line(), failures_told():
+        # Hydra is to raise what goes wrong, instead of printing it over several lines and leaving.
+        quiet = environment("HYDRA_FULL_ERROR", "1")
+        with quiet, _in_argv([*arguments.overrides, *flags]), told_in_one_line(), failures_told():
             start()
     except SystemExit as left:
         return left.code if isinstance(left.code, int) else DONE if left.code is None else SYSTEM_FAILED
@@ -79,6 +108,26 @@ def _override(key: str, folder: Path) -> str:
     return f"{key}='{text}'"
 
 
+def read_arguments(words: Sequence[str]) -> Namespace:
+    """Give what Hydra's parser makes of words; one that it does not take is told in one line."""
+    from hydra._internal.utils import get_args_parser
+
+    parser = get_args_parser()
+    _tell_in_one_line(parser)
+    arguments = parser.parse_intermixed_args(list(words))
+    if arguments.experimental_rerun is not None:
+        raise RefusedError("--experimental-rerun loads a pickle, which can run any code: it must not be given")
+    return arguments
+
+
+def _flags(words: Sequence[str], arguments: Namespace) -> list[str]:
+    """Give the words that are not overrides; Hydra takes them only in front of those or behind, not between."""
+    flags = list(words)
+    for override in arguments.overrides:
+        flags.remove(override)
+    return flags
+
+
 def _tell_in_one_line(parser: ArgumentParser) -> None:
     def refuse(message: str) -> NoReturn:
         raise RefusedError(f"{message}; multilens --help shows what can be asked")
@@ -87,11 +136,10 @@ def _tell_in_one_line(parser: ArgumentParser) -> None:
 
 
 @contextmanager
-def _hydra_raises() -> Iterator[None]:
-    """Have Hydra raise what goes wrong, instead of printing it over several lines and leaving."""
-    name = "HYDRA_FULL_ERROR"
+def environment(name: str, value: str) -> Iterator[None]:
+    """Set a variable of the environment for a while."""
     before = os.environ.get(name)
-    os.environ[name] = "1"
+    os.environ[name] = value
     try:
         yield
     finally:

@@ -7,7 +7,7 @@ from contextlib import contextmanager
 
 from multilens.app.refusal import one_line
 
-DONE, SYSTEM_FAILED, BAD_INPUT, NOTHING_FOUND, INTERRUPTED, TERMINATED = 0, 1, 2, 3, 130, 143
+DONE, SYSTEM_FAILED, BAD_INPUT, NOTHING_FOUND, INTERRUPTED, BROKEN_PIPE, TERMINATED = 0, 1, 2, 3, 130, 141, 143
 
 
 class TerminatedError(BaseException):

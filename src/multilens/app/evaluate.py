@@ -6,6 +6,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from multilens.app import build
+from multilens.app.answer import answer, without_flag
+from multilens.app.busy import busy
 from multilens.app.ending import DONE
 from multilens.app.estimates import notes
 from multilens.app.folder import refuse_used, write_folder
@@ -17,6 +19,24 @@ from multilens.app.tolerance import build_tolerance
 if TYPE_CHECKING:
     from multilens.design import Design
     from multilens.problem import Problem
+
+USAGE = """\
+multilens evaluate experiment=NAME key=value ...        score a device whose lenses have their places
+multilens evaluate RUN_FOLDER|DESIGN.json key=value ... score a saved design, as it is or under another question
+
+Options
+  out=FOLDER               save what was scored as a run folder
+  --json                   print the design and the paths of its files as JSON, and nothing else
+  --config-dir FOLDER      take presets of your own as well
+
+Of a saved design the words may set depth, field_of_view, cues, metric, fusion, robust and tolerance, and scene beside cues. The
+rest is hardware, which it has.
+
+Examples
+  multilens evaluate experiment=devices/iphone_15_pro_max
+  multilens evaluate experiment=demo lenses.count=2 'lenses.places=[[14,14],[60,14]]' out=runs/mine
+  multilens evaluate runs/mine depth=portrait
+  multilens evaluate runs/mine cues=photometric scene=dim tolerance.mm=5 --json"""
 
 QUESTION = {
     "depth": ("depths", "weights"),
@@ -36,10 +56,11 @@ OUT = "out"
 
 @dataclass(frozen=True)
 class _Asked:
-    """The words of the command line, sorted: what to score, where to write, and key=value."""
+    """The words of the command line, sorted: what to score, where to write, whether as JSON, and key=value."""
 
     path: Path | None
     out: Path | None
+    as_json: bool
     lines: tuple[str, ...]
 
 
@@ -47,7 +68,7 @@ def evaluate_command(words: Sequence[str]) -> int:
     """Score what the words name, print it, and write a run folder where one is asked for.
 
     Args:
-        words: `DESIGN.json` or `RUN_FOLDER` or neither, key=value, and `out=FOLDER`.
+        words: `DESIGN.json` or `RUN_FOLDER` or neither, key=value, `out=FOLDER` and `--json`.
 
     Returns:
         The exit code.
@@ -63,18 +84,18 @@ def evaluate_command(words: Sequence[str]) -> int:
     load_torch()
     from multilens.app.account import account
 
-    if asked.path is None:
-        assert given is not None
-        design, text = _within(_of_configuration(given), given), given.text
-        lines = [account(design, chosen=True), notes(given.config, given.keys)]
-    else:
-        design = _within(_of_file(asked.path, given), given)
-        text = f"design: {asked.path}\noverrides: {list(asked.lines)}\n"
-        lines = [account(design, chosen=False)]
+    with busy("scoring"):
+        if asked.path is None:
+            assert given is not None
+            design, text = _within(_of_configuration(given), given), given.text
+            lines = [account(design, chosen=True), notes(given.config, given.keys)]
+        else:
+            design = _within(_of_file(asked.path, given), given)
+            text = f"design: {asked.path}\noverrides: {list(asked.lines)}\n"
+            lines = [account(design, chosen=False)]
     said = "\n\n".join(filter(None, lines))
-    print(said)
-    if asked.out is not None:
-        write_folder(asked.out, design, text, " ".join(["multilens evaluate", *words]) + f"\n{said}\n")
+    log = " ".join(["multilens evaluate", *words]) + f"\n{said}\n"
+    answer(said, design, lambda: write_folder(asked.out, design, text, log), asked.as_json)
     return DONE
 
 
@@ -85,6 +106,7 @@ def _within(design: "Design", given: Given | None) -> "Design":
 
 
 def _sorted_words(words: Sequence[str]) -> _Asked:
+    as_json, words = without_flag(words)
     paths = [word for word in words[:1] if "=" not in word and not word.startswith("-")]
     rest = list(words[len(paths) :])
     outs = [word.partition("=")[2] for word in rest if word.partition("=")[0] == OUT]
@@ -96,7 +118,7 @@ def _sorted_words(words: Sequence[str]) -> _Asked:
             "evaluate must be given a design.json, a run folder or a configuration, as in multilens evaluate "
             "experiment=devices/iphone_15_pro_max, got none"
         )
-    return _Asked(_design_file(Path(paths[0])) if paths else None, Path(outs[0]) if outs else None, lines)
+    return _Asked(_design_file(Path(paths[0])) if paths else None, Path(outs[0]) if outs else None, as_json, lines)
 
 
 def _design_file(path: Path) -> Path:
@@ -150,7 +172,10 @@ def _asked_anew(problem: "Problem", given: Given) -> "Problem":
     for part in sorted(parts - set(QUESTION)):
         raise RefusedError(f"{part}: a stored layout can be scored under another {', '.join(QUESTION)}, got {part}")
     if "scene" in parts and "cues" not in parts:
-        raise RefusedError("scene: a stored layout keeps its cues and what they look at, unless cues=... comes with it")
+        raise RefusedError(
+            "scene: a stored layout keeps its cues and what they look at, unless cues come with it: add cues=photometric, "
+            "or whichever it is to be scored by"
+        )
     anew = build.build_problem(given.config)
     others = {name: getattr(anew, name) for part in parts for name in QUESTION[part]}
     # A lens that could focus where the depths were still could: its bounds are hardware.

@@ -42,9 +42,6 @@ def export_command(words: Sequence[str]) -> int:
         RefusedError: the words cannot be understood, a file is there already, or the design is damaged.
         OSError: a file cannot be written.
     """
-    if any(word in ("--help", "-h") for word in words):
-        print(USAGE)
-        return DONE
     source, paths, overwrite = _sorted_words(words)
     from multilens.app.loading import load_torch
 

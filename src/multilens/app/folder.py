@@ -15,16 +15,18 @@ def refuse_used(folder: Path) -> None:
         raise RefusedError(f"out must be a new or empty folder, {folder} is a file or holds something already")
 
 
-def write_folder(folder: Path, design: "Design", config_text: str, log_text: str) -> None:
-    """Write a run folder and print the paths of its files.
+def write_folder(folder: Path | None, design: "Design", config_text: str, log_text: str) -> list[Path]:
+    """Write a run folder and give the paths of its files; none without a folder.
 
     Raises:
         OSError: it cannot be written.
     """
+    from multilens.app.busy import busy
     from multilens.runs import write_run
 
+    if folder is None:
+        return []
     folder.parent.mkdir(parents=True, exist_ok=True)
-    write_run(folder, design, config_text, log_text)
-    print()
-    for path in sorted(folder.iterdir()):
-        print(path)
+    with busy("drawing the pictures"):
+        write_run(folder, design, config_text, log_text)
+    return sorted(folder.iterdir())

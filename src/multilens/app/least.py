@@ -6,9 +6,10 @@ from dataclasses import dataclass
 from functools import partial
 from math import isfinite
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from multilens.app import build
+from multilens.app.answer import answer, without_flag
 from multilens.app.ending import DONE, NOTHING_FOUND, tell
 from multilens.app.folder import refuse_used, write_folder
 from multilens.app.given import Given, read_given
@@ -40,6 +41,7 @@ Options
   most=8                 lenses to count up to (8), or the largest size to look at (1, the back as it is)
   precision=0.01         part of a size or radius to which it is found
   out=FOLDER             save the design that is enough as a run folder
+  --json                 print what was tried, the design and the paths of its files as JSON, and nothing else
 
 Examples
   multilens least lenses rmse=3.5 experiment=phone_back_island
@@ -62,12 +64,14 @@ class _Asked:
         what: lenses, size or aperture.
         number: of each of NUMBERS that was given.
         out: folder for the design; None for none.
+        as_json: whether to print JSON.
         given: the configuration.
     """
 
     what: str
     number: dict[str, float]
     out: Path | None
+    as_json: bool
     given: Given
 
 
@@ -84,27 +88,38 @@ def least_command(words: Sequence[str]) -> int:
         RefusedError: the words cannot be understood.
         OSError: the folder cannot be written.
     """
-    if any(word in ("--help", "-h") for word in words):
-        print(USAGE)
-        return DONE
     asked = _sorted_words(words)
     goal = _goal(asked)
     load_torch()
     problem = _problem(asked)
     _refuse_strange_figure(asked, problem)
-    answer = _answer(asked, problem, goal)
-    said = "\n\n".join(filter(None, [str(answer), "" if answer.design is None else str(answer.design)]))
-    print(said)
-    if answer.design is None:
-        tell(f"nothing that was tried is enough for {answer.goal}")
+    found = _answer(asked, problem, goal)
+    design = found.design
+    said = "\n\n".join(filter(None, [str(found), "" if design is None else str(design)]))
+    log = " ".join(["multilens least", *words]) + f"\n{said}\n"
+
+    def write() -> list[Path]:
+        return [] if design is None else write_folder(asked.out, design, asked.given.text, log)
+
+    answer(said, design, write, asked.as_json, least=_plain(found))
+    if design is None:
+        tell(f"nothing that was tried is enough for {found.goal}")
         return NOTHING_FOUND
-    if asked.out is not None:
-        log = " ".join(["multilens least", *words]) + f"\n{said}\n"
-        write_folder(asked.out, answer.design, asked.given.text, log)
     return DONE
 
 
+def _plain(found: "Answer") -> dict[str, Any]:
+    """Give as plain data what was asked, what was tried, and what is certain."""
+    trials = [
+        {"value": trial.value, "verdict": trial.verdict, "figure": trial.figure, "bound": trial.bound}
+        for trial in found.trials
+    ]
+    names = {"of": found.resource.name, "goal": found.goal, "figure": found.head}
+    return names | {"enough": found.value, "proved_not_enough": found.proved_below, "trials": trials}
+
+
 def _sorted_words(words: Sequence[str]) -> _Asked:
+    as_json, words = without_flag(words)
     what, rest = next(iter(words), ""), words[1:]
     if what not in OPTIONS:
         raise RefusedError(
@@ -128,7 +143,7 @@ def _sorted_words(words: Sequence[str]) -> _Asked:
         raise RefusedError(f"{name} is no option of least {what}, got {name}={own[name]}")
     if what == "lenses" and not number.get("most", 1.0).is_integer():
         raise RefusedError(f"most must be a whole number of lenses, got {own['most']}")
-    return _Asked(what, number, out, read_given(lines))
+    return _Asked(what, number, out, as_json, read_given(lines))
 
 
 def _number(name: str, text: str) -> float:

@@ -6,6 +6,17 @@ from pathlib import Path
 from multilens.app.ending import DONE
 from multilens.app.refusal import RefusedError
 
+USAGE = """\
+multilens plot RUN_FOLDER      draw the pictures of a saved run again
+multilens plot SWEEP_FOLDER    draw those of a sweep again
+
+Those of a run are drawn from its design.json alone, those of a sweep from its jobs' rows and designs; nothing else is touched. The
+paths of the pictures are printed.
+
+Examples
+  multilens plot runs/demo/2026-11-22_04-38-31
+  multilens plot sweeps/camera_count"""
+
 
 def plot_command(words: Sequence[str]) -> int:
     """Draw the pictures of a run again from its design alone, or those of a sweep from its table, and print their paths.
@@ -41,19 +52,23 @@ def plot_command(words: Sequence[str]) -> int:
 
 
 def _redrawn_run(folder: Path) -> list[Path]:
+    from multilens.app.busy import busy
     from multilens.runs import redraw
 
     try:
-        redraw(folder)
+        with busy("drawing the pictures"):
+            redraw(folder)
     except ValueError as error:
         raise RefusedError(f"plot: {error}") from None
     return sorted([*folder.glob("*.svg"), *folder.glob("*.png")])
 
 
 def _redrawn_sweep(folder: Path) -> list[Path]:
+    from multilens.app.busy import busy
     from multilens.sweeps.pictures import draw_pictures
 
-    pictures = [folder / picture.name for picture in draw_pictures(folder)]
+    with busy("drawing the pictures"):
+        pictures = [folder / picture.name for picture in draw_pictures(folder)]
     if not pictures:
         raise RefusedError(
             f"plot: {folder} must be the folder of a sweep that found a design, none of its jobs has one"

@@ -6,6 +6,18 @@ from pathlib import Path
 from multilens.app.ending import DONE
 from multilens.app.refusal import RefusedError, one_line
 
+USAGE = """\
+multilens report RUN_FOLDER    one HTML file that tells of a saved run, with a slider of depths
+
+The file needs no server and no network. Its path is printed.
+
+Options
+  out=FILE.html            where it goes (report.html in the folder)
+
+Examples
+  multilens report runs/demo
+  multilens report runs/demo out=phone.html"""
+
 OUT = "out="
 
 

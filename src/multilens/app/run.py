@@ -10,13 +10,20 @@ from hydra.core.hydra_config import HydraConfig
 from hydra.types import RunMode
 from omegaconf import DictConfig, OmegaConf
 
-from multilens.app.ending import BAD_INPUT, NOTHING_FOUND, SYSTEM_FAILED, tell
+from multilens.app.answer import answer
+from multilens.app.busy import busy
+from multilens.app.ending import BAD_INPUT, BROKEN_PIPE, NOTHING_FOUND, SYSTEM_FAILED, tell
 from multilens.app.loading import load_torch
 from multilens.app.refusal import RefusedError
 from multilens.app.search import NothingFoundError
 
 
-def run_job(config: DictConfig) -> None:
+def run_job_for_programs(config: DictConfig) -> None:
+    """Do what `run_job` does of a job by itself, but print JSON."""
+    run_job(config, as_json=True)
+
+
+def run_job(config: DictConfig, as_json: bool = False) -> None:
     """Make the design that a composed configuration asks for and write its folder, whole or not at all.
 
     In a sweep a job that finds nothing, or fails, leaves a folder that says why, so that the sweep goes on and its table
@@ -24,6 +31,7 @@ def run_job(config: DictConfig) -> None:
 
     Args:
         config: composed, without Hydra's own part.
+        as_json: whether to print JSON instead of words, of a job that is not in a sweep.
 
     Raises:
         SystemExit: after one line on stderr: nothing was found (3), not in a sweep, the configuration cannot be run or is not
@@ -42,7 +50,9 @@ def run_job(config: DictConfig) -> None:
 
             run_sweep_job(config, folder, overrides, in_process)
         else:
-            _run_alone(config, folder, overrides)
+            _run_alone(config, folder, overrides, as_json)
+    except BrokenPipeError:
+        raise SystemExit(BROKEN_PIPE) from None
     except (OSError, RefusedError) as error:
         if not in_process:
             raise
@@ -51,7 +61,7 @@ def run_job(config: DictConfig) -> None:
         _remove_if_empty(folder)
 
 
-def _run_alone(config: DictConfig, folder: Path, overrides: list[str]) -> None:
+def _run_alone(config: DictConfig, folder: Path, overrides: list[str], as_json: bool) -> None:
     load_torch()
     from multilens.app.searched import from_here, log_text, searched
     from multilens.runs import write_run
@@ -60,17 +70,16 @@ def _run_alone(config: DictConfig, folder: Path, overrides: list[str]) -> None:
         found = searched(config, visible=True)
     except NothingFoundError as reason:
         _leave(NOTHING_FOUND, reason)
-    print(found.design)
     marks = _estimates(config)
-    if marks:
-        print(f"\n{marks}")
-    took = f"searched for {found.seconds:.1f} s"
-    write_run(
-        folder, found.design, OmegaConf.to_yaml(config, resolve=True), log_text(overrides, *found.log, took, marks)
-    )
-    print()
-    for path in sorted(folder.iterdir()):
-        print(from_here(path))
+    said = "\n\n".join(filter(None, [str(found.design), marks]))
+    log = log_text(overrides, *found.log, f"searched for {found.seconds:.1f} s", marks)
+
+    def write() -> list[Path]:
+        with busy("drawing the pictures"):
+            write_run(folder, found.design, OmegaConf.to_yaml(config, resolve=True), log)
+        return [from_here(path) for path in sorted(folder.iterdir())]
+
+    answer(said, found.design, write, as_json)
 
 
 def _estimates(config: DictConfig) -> str:

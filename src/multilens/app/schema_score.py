@@ -8,6 +8,9 @@ from omegaconf import MISSING
 MetricName = Enum("MetricName", ["mean_square", "relative", "inverse_depth", "worst_case"])
 """The metrics that a configuration can name."""
 
+ErrorName = Enum("ErrorName", ["mean_square", "relative", "inverse_depth"])
+"""Those whose error at one depth the worst case can be taken of."""
+
 FusionName = Enum("FusionName", ["best", "inverse_variance"])
 """The fusions that a configuration can name."""
 
@@ -22,7 +25,7 @@ class MetricConfig:
     """
 
     name: MetricName = MISSING
-    of: MetricName | None = None
+    of: ErrorName | None = None
 
 
 @dataclass

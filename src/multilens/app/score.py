@@ -24,10 +24,9 @@ def check_score(metric: MetricConfig, fusion: FusionConfig, depth: DepthConfig) 
     Raises:
         RefusedError: something is out of its range or does not go together.
     """
-    if metric.of is not None and (metric.name is not WORST or metric.of is WORST):
+    if metric.of is not None and metric.name is not WORST:
         raise RefusedError(
-            f"metric.of must be mean_square, relative or inverse_depth beside metric.name=worst_case, and null beside others, "
-            f"got {metric.of.name} beside {metric.name.name}"
+            f"metric.of must be null beside all but metric.name=worst_case, got {metric.of.name} beside {metric.name.name}"
         )
     if fusion.guess is not None and not (isfinite(fusion.guess) and fusion.guess > 0):
         raise RefusedError(f"fusion.guess must be > 0 mm and finite, or null, got {fusion.guess:g}")

@@ -68,7 +68,7 @@ def compute_if_missing(config: DictConfig, folder: Path, overrides: Sequence[str
 def _compute(
     config: DictConfig, folder: Path, overrides: Sequence[str], fixed: Sequence[str], mark: str, visible: bool
 ) -> None:
-    load_torch()
+    load_torch(visible)
     from multilens.metrics import in_words
     from multilens.runs import write_design, write_words
 

@@ -9,7 +9,7 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn
 
 from multilens.metrics import in_words
-from multilens.search.progress import Listener
+from multilens.search.progress import BOUND, Listener
 from multilens.search.progress import Progress as SearchProgress
 
 
@@ -22,19 +22,25 @@ def progress_bar(log: list[str], visible: bool) -> Iterator[Listener]:
         visible: whether to show anything at all; where stderr is no terminal nothing is shown either.
     """
     console = Console(stderr=True)
-    columns = [TextColumn("{task.description:<8}"), BarColumn(), TextColumn("{task.fields[told]}")]
+    columns = [
+        TextColumn("{task.description:<10}"),
+        BarColumn(),
+        TextColumn("{task.fields[told]}"),
+    ]
     last: dict[str, SearchProgress] = {}
     with Progress(*columns, console=console, transient=True, disable=not (visible and sys.stderr.isatty())) as shown:
         bar = shown.add_task("search", total=1.0, told="")
 
         def listen(progress: SearchProgress) -> None:
             last[progress.stage] = progress
-            shown.update(bar, description=progress.stage, completed=progress.done, told=told(progress))
+            # Without a total the bar only shows that something goes on.
+            total = None if progress.stage == BOUND else 1.0
+            shown.update(bar, description=progress.stage, total=total, completed=progress.done, told=told(progress))
 
         try:
             yield listen
         finally:
-            log += [f"{stage}: {how_far(progress)}" for stage, progress in last.items()]
+            log += [f"{stage}: {how_far(progress)}" for stage, progress in last.items() if stage != BOUND]
 
 
 def told(progress: SearchProgress) -> str:

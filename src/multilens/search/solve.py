@@ -23,7 +23,7 @@ from multilens.search.limits import Limits
 from multilens.search.parting import part
 from multilens.search.polish import OutOfTimeError, polish
 from multilens.search.pool import Candidate, Elite
-from multilens.search.progress import Listener, Progress
+from multilens.search.progress import BOUND, Listener, Progress
 from multilens.search.rough import at_few_depths
 from multilens.search.sight import Seer
 from multilens.search.starts import scattered_starts, tried_places
@@ -140,6 +140,8 @@ def solve(
     convergence = search.convergence
     if best.certificate.feasible:
         status = OUT_OF_TIME if search.out_of_time else COMPLETE
+        if proof:
+            search.tell(BOUND, 0.0, search.alive)
         bound = lower_bound(problem, proof, best.score) if proof else None
         return Design(problem, best.layout, status, "", best.certificate, convergence, origin, bound)
     tightest = best.certificate.tightest
@@ -246,7 +248,7 @@ class _Search:
             self.tally.histories.append(self._scores(settled.history))
             self.alive += int(settled.value.isfinite().sum())
             self._take(settled, first)
-            self._tell("starts", last / starts, last)
+            self.tell("starts", last / starts, last)
 
     def vary(self, patience: int, batch: int) -> None:
         """Settle variations of the best until there is no progress for a while."""
@@ -259,7 +261,7 @@ class _Search:
             settled = self._settle(varier(self.elite.share, batch), FROM_NEARBY, afresh=False)
             self._take(settled, None)
             idle = 0 if self.best_value < before - PROGRESS else idle + 1
-            self._tell("variations", idle / patience, self.alive)
+            self.tell("variations", idle / patience, self.alive)
 
     def finish(self) -> None:
         """Polish the best to the end."""
@@ -271,7 +273,7 @@ class _Search:
             self.out_of_time = True
             return
         self._claim(self.exact.layout(x))
-        self._tell("polish", 1.0, self.alive)
+        self.tell("polish", 1.0, self.alive)
 
     def _settle(self, share: Tensor, pressure: float, afresh: bool) -> Settled:
         settings = BarrierSettings(STEPS + STEPS_PER_LENS * self.exact.count, (pressure, LAST))
@@ -329,7 +331,8 @@ class _Search:
         self.out_of_time |= late
         return late
 
-    def _tell(self, stage: str, done: float, starts: int) -> None:
+    def tell(self, stage: str, done: float, starts: int) -> None:
+        """Tell the listener how far the search has come."""
         feasible = self.incumbent is not None and self.incumbent.certificate.feasible
         layout = self.incumbent.layout if feasible and self.incumbent is not None else None
         score = self.incumbent.score if feasible and self.incumbent is not None else nan
