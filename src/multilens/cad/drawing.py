@@ -17,6 +17,9 @@ MOST_KEEP_OUTS = 256
 MOST_CURVES = 256
 """That make one outline or one keep-out."""
 
+MICROMETRE = 3
+"""Decimals of a millimetre that are told."""
+
 MOST_NAMED = 20
 """Layers that a message names."""
 
@@ -90,10 +93,9 @@ class BackRead:
     left: tuple[str, ...]
 
     def __str__(self) -> str:
-        left, top, right, bottom = self.back.outline.bounds
-        lines = [
-            f"outline: {right - left:.6g} x {bottom - top:.6g} mm, from ({left:.6g}, {top:.6g}) to ({right:.6g}, {bottom:.6g})"
-        ]
+        left, top, right, bottom = (round(bound, MICROMETRE) for bound in self.back.outline.bounds)
+        size = f"{right - left:.6g} x {bottom - top:.6g} mm"
+        lines = [f"outline: {size}, from ({left:g}, {top:g}) to ({right:g}, {bottom:g})"]
         lines.append(f"keep-outs: {', '.join(keep_out.name for keep_out in self.back.keep_outs) or 'none'}")
         if self.moved:
             by = max(self.moved.values())

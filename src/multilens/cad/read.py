@@ -8,6 +8,7 @@ from multilens.back import Back
 from multilens.cad.drawing import BackRead, Wanted, back_of
 from multilens.cad.formats import loaded, read_form
 from multilens.cad.layers import OUTLINE
+from multilens.ranges import refuse_unless_not_negative
 
 LARGEST_FILE = 16 * 2**20
 """Bytes."""
@@ -55,6 +56,7 @@ def read_with_notes(path: Path, units: str | None, wanted: Wanted) -> BackRead:
     """Do as `read_back` does, and tell what is worth knowing of it."""
     if not (isfinite(wanted.tolerance) and 0 < wanted.tolerance <= COARSEST):
         raise ValueError(f"tolerance must be > 0 and at most {COARSEST:g} mm, got {wanted.tolerance:g}")
+    refuse_unless_not_negative("clearance", wanted.clearance)
     form = read_form(path)
     read = loaded("read", form)
     try:
