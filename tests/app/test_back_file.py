@@ -16,7 +16,7 @@ from multilens.design import Design
 from multilens.geometry.shape import disc
 
 BACK = Back.rounded_rectangle(40, 60, corner=6).keep_out("flash", disc((20, 10), 2), clearance=0.5)
-QUICK = ["lenses.count=2", "search.starts=4", "search.patience=0", "search.proof=1", "depth.count=8"]
+QUICK = ["lenses=unit", "cues=stereo", "depth.count=2", "search.starts=2", "search.patience=0", "search.proof=0"]
 
 
 @pytest.fixture(autouse=True)
@@ -34,8 +34,11 @@ def test_a_back_is_read_from_where_the_command_runs():
     assert read("back.file.path=phone.svg") == BACK
 
 
-def test_keep_outs_of_the_configuration_come_on_top():
-    back = read("back.file.path=phone.svg", "+back.keep_outs.logo={shape:{kind:disc,radius:3}}")
+def test_keep_outs_of_the_configuration_come_on_top(tmp_path: Path):
+    (tmp_path / "presets" / "back").mkdir(parents=True)
+    logo = "keep_outs: {logo: {shape: {kind: disc, radius: 3}}}"
+    (tmp_path / "presets" / "back" / "mine.yaml").write_text(f"file: {{path: phone.svg}}\n{logo}\n")
+    back = build_back(read_given(["--config-dir", "presets", "back=mine"]).config.back)
     assert [keep_out.name for keep_out in back.keep_outs] == ["flash", "logo"]
 
 
@@ -52,7 +55,7 @@ def test_layers_units_clearance_and_tolerance_are_told_by_keys():
 
 def test_a_run_says_what_it_read_and_keeps_it(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]):
     monkeypatch.setattr("multilens.runs._draw", lambda design, folder: None)
-    words = ["experiment=phone_back", "back=file", "back.file.path=phone.svg", "hydra.run.dir=run", *QUICK]
+    words = ["back=file", "back.file.path=phone.svg", "hydra.run.dir=run", *QUICK]
     monkeypatch.setattr("sys.argv", ["multilens", *words])
     assert run_command(words) == 0
     said = "back from phone.svg:\n  outline: 40 x 60 mm, from (0, 0) to (40, 60)\n  keep-outs: flash\n"
