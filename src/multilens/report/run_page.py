@@ -5,7 +5,7 @@ from math import inf
 from typing import Any
 
 from multilens.design import INFEASIBLE, Design
-from multilens.plot.back import part_name
+from multilens.plot.bare import part_name
 from multilens.plot.errors import curve_name
 from multilens.plot.figures import title, warning
 from multilens.plot.page import errors_svg, layout_svg
