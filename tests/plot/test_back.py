@@ -5,7 +5,8 @@ import pytest
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
-from multilens.plot.back import best_pairs, draw_layout
+from multilens.plot.back import draw_layout
+from multilens.plot.bare import best_pairs
 from multilens.plot.style import style
 
 TOUCH = 0.5
