@@ -1,0 +1,55 @@
+"""The pictures of a sweep from the command line."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from multilens.app.command import run_command
+from multilens.app.drawing import pictures_drawn
+
+SMALL = ["experiment=spider", "search.starts=2", "search.patience=0", "search.proof=1", "depth.count=16"]
+
+
+@pytest.fixture(scope="module")
+def swept(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Give the folder of a sweep of one and two lenses."""
+    folder = tmp_path_factory.mktemp("swept") / "sweep"
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("multilens.plot.figures.DOTS_PER_INCH", 20)
+        assert run_command(["-m", *SMALL, "lenses.count=1,2", f"hydra.sweep.dir={folder}"]) == 0
+    return folder
+
+
+def test_a_sweep_ends_with_its_pictures(swept: Path):
+    assert {path.stem for path in swept.glob("*.png")} == {path.stem for path in swept.glob("*.svg")}
+    assert {path.stem for path in swept.glob("*.svg")} == {"count", "layouts", "front"}
+
+
+def test_plot_draws_them_again_and_tells_where(
+    swept: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+):
+    monkeypatch.setattr("multilens.plot.figures.DOTS_PER_INCH", 20)
+    before = {path: path.read_bytes() for path in swept.glob("*.*") if path.is_file()}
+    (swept / "count.svg").unlink()
+    assert run_command(["plot", str(swept)]) == 0
+    assert str(swept / "count.svg") in capsys.readouterr().out.splitlines()
+    assert {path: path.read_bytes() for path in before} == before
+
+
+def test_plot_of_a_sweep_that_found_nothing_is_refused(swept: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    (tmp_path / "0").mkdir()
+    (tmp_path / "0" / "row.json").write_text(json.dumps({"damaged": True}))
+    assert run_command(["plot", str(tmp_path)]) == 2
+    assert "none of its jobs has one" in capsys.readouterr().err
+
+
+def test_pictures_that_cannot_be_written_are_told_in_one_line(
+    swept: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+):
+    def full(folder: Path) -> None:
+        raise OSError(28, "No space left on device", str(folder))
+
+    monkeypatch.setattr("multilens.sweeps.pictures.draw_pictures", full)
+    assert not pictures_drawn(swept)
+    assert capsys.readouterr().err.count("\n") == 1
