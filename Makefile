@@ -39,7 +39,7 @@ clean:
 	touch $@
 
 .venv/development: .venv/runtime
-	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable '.[cluster,dev,docs]'
+	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable '.[dev,docs]'
 	touch $@
 
 .venv/benchmark: .venv/runtime

@@ -130,7 +130,7 @@ def parsed(lines: list[str], loader: ConfigLoader) -> list[Override]:
             continue
         options = loader.get_group_options(key) if "." not in key else []
         if options and not isinstance(override.value(), dict):
-            for choice in _named(override, loader):
+            for choice in named_values(override, loader):
                 if "/" not in choice and choice not in options:
                     raise RefusedError(no_such_option(key, choice, options))
         elif not is_known(key.split(".")):
@@ -142,7 +142,8 @@ def _line(override: Override) -> str:
     return override.input_line or override.key_or_group
 
 
-def _named(override: Override, loader: ConfigLoader) -> list[str]:
+def named_values(override: Override, loader: ConfigLoader) -> list[str]:
+    """Give what an override sets, as it is written: one value, each of a list, or each of those that it sweeps."""
     if override.value() is None or override.is_delete():
         return []
     if override.is_sweep_override():

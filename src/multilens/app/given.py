@@ -42,7 +42,7 @@ def read_given(words: Sequence[str]) -> Given:
     Raises:
         RefusedError: something is unknown, out of its range, has several values or does not go together; one line.
     """
-    folder, lines = _folder_of_presets(words)
+    folder, lines = folder_of_presets(words)
     arguments = Namespace(config_path=None, config_dir=folder, overrides=lines)
     refuse_wild_folders(arguments)
     with open_hydra(arguments), told_in_one_line():
@@ -59,7 +59,7 @@ def read_given(words: Sequence[str]) -> Given:
     return Given(config, text, tuple(override.key_or_group for override in overrides))
 
 
-def _folder_of_presets(words: Sequence[str]) -> tuple[str | None, list[str]]:
+def folder_of_presets(words: Sequence[str]) -> tuple[str | None, list[str]]:
     """Take `--config-dir FOLDER` or `--config-dir=FOLDER` out of the words."""
     folder, lines, rest = None, [], iter(words)
     for word in rest:

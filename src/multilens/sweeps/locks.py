@@ -63,5 +63,10 @@ def clear_half_written(folder: Path) -> None:
                 left.unlink(missing_ok=True)
 
 
+def free_lock(folder: Path, name: str) -> FileLock:
+    """Give a lock that is not held, for a library that acquires and releases it by itself."""
+    return FileLock(_lock_file(folder, name))
+
+
 def _lock_file(folder: Path, name: str) -> Path:
     return folder / f".{name}.lock"
