@@ -4,7 +4,8 @@ A page is run from top to bottom in a folder of its own. A `yaml` block is writt
 `python` blocks of a page share their names, and a command exits with 0 unless a comment after it says otherwise.
 
 To stay within a minute, a command that searches is run with the overrides in QUICK, unless the page sets them itself: so of its
-output the form is compared, not the numbers. Its pictures are drawn coarsely, and in a sweep not at all.
+output the form is compared, not the numbers. Its pictures are drawn coarsely, and in a sweep not at all. An
+exploration makes two trials.
 
 A command for a cluster, with hydra/launcher=submitit_slurm in its first line, is run by tests/cluster/test_slurm.py.
 Shapes are not enforced here, where time counts: every other test does that.
@@ -112,7 +113,10 @@ def quickly(command: Command) -> list[str]:
     if not any(word.startswith("experiment=") for word in command.words) or "--cfg" in command.words or command.code:
         return list(command.words)
     given = {word.partition("=")[0] for word in command.words}
-    return [*command.words, *(f"{key}={value}" for key, value in QUICK.items() if key not in given)]
+    words = [*command.words, *(f"{key}={value}" for key, value in QUICK.items() if key not in given)]
+    if words[0] == "explore":
+        words = [*(word for word in words if not word.startswith("trials=")), "trials=2"]
+    return words
 
 
 def form(output: str) -> str:
