@@ -43,6 +43,11 @@ def test_a_machine_without_slurm_is_told(
     assert list(tmp_path.iterdir()) == []
 
 
+def test_a_node_that_lacks_a_library_is_told_in_one_line():
+    with pytest.raises(OSError, match=r"^ModuleNotFoundError: No module named 'torch'$"), failures_told():
+        raise ModuleNotFoundError("No module named 'torch'")
+
+
 def test_a_job_that_was_killed_is_told_in_one_line():
     from submitit.core.utils import UncompletedJobError
 

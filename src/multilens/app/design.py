@@ -59,6 +59,7 @@ def design_command(words: Sequence[str]) -> int:
     from multilens.app.sweep import SweepTable
     from multilens.app.telling import told_in_one_line
     from multilens.app.yaml_limits import refuse_wild_folders
+    from multilens.sweeps.table import write_tables
 
     as_json, words = without_flag(words)
     arguments = read_arguments(words)
@@ -67,6 +68,7 @@ def design_command(words: Sequence[str]) -> int:
         raise RefusedError(
             f"{FLAG} is for one design: of a sweep, table.jsonl in its folder has a JSON object for each job"
         )
+    sweep = None
     if not (arguments.help or arguments.hydra_help or arguments.shell_completion or arguments.info or arguments.cfg):
         from multilens.app.check import check_command_line
 
@@ -92,6 +94,11 @@ def design_command(words: Sequence[str]) -> int:
         quiet = environment("HYDRA_FULL_ERROR", "1")
         with quiet, _in_argv([*arguments.overrides, *flags]), told_in_one_line(), failures_told():
             start()
+    except OSError:
+        # The sweep's end was not reached: what is done is in the table all the same.
+        if sweep is not None:
+            write_tables(sweep.folder)
+        raise
     except SystemExit as left:
         return left.code if isinstance(left.code, int) else DONE if left.code is None else SYSTEM_FAILED
     except ValueError as error:

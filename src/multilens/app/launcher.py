@@ -40,9 +40,11 @@ def refuse_without_cluster(launcher: Mapping[str, Any]) -> None:
 
 @contextmanager
 def failures_told() -> Iterator[None]:
-    """Turn what submitit raises, of a job that was killed or that the cluster does not take, into an OSError of one line."""
+    """Turn what comes of a node that lacks a library, of a job that was killed or is not taken, into an OSError of one line."""
     try:
         yield
+    except ImportError as error:
+        raise OSError(one_line(f"{type(error).__name__}: {error}")) from None
     except RuntimeError as error:
         if not type(error).__module__.startswith("submitit."):
             raise
