@@ -86,7 +86,9 @@ def png(figure: Figure) -> bytes:
     drawn, small = BytesIO(), BytesIO()
     with style():
         figure.savefig(drawn, dpi=DOTS_PER_INCH, metadata={"Software": None})
-    Image.open(drawn).convert("RGB").quantize(method=Image.Quantize.MAXCOVERAGE).save(small, "PNG", optimize=True)
+    Image.open(drawn).convert("RGB").quantize(method=Image.Quantize.MAXCOVERAGE, kmeans=3).save(
+        small, "PNG", optimize=True
+    )
     return small.getvalue()
 
 

@@ -179,6 +179,12 @@ def test_every_link_leads_somewhere(page: Path):
             assert heading in {title.lower().replace(" ", "-") for title in titles}, target
 
 
+@each(PAGES)
+def test_lists_begin_with_a_star(page: Path):
+    """A line of a paragraph that begins with a minus, as of a formula, would be shown as an item of a list."""
+    assert re.findall(r"(?m)^ *[-+] .*$", prose(page)) == []
+
+
 def test_the_index_lists_every_page():
     listed = set(re.findall(r"\]\((\w+\.md)\)", (ROOT / "docs/README.md").read_text(encoding="utf-8")))
     assert listed == {page.name for page in ROOT.glob("docs/*.md")} - {"README.md"}
