@@ -81,6 +81,7 @@ def check_command_line(arguments: Namespace) -> Checked:
         swept = [override for override in overrides if override.is_sweep_override()]
         first = composed(config_name, [_choices(override, loader)[0] for override in overrides])
         is_sweep = arguments.multirun or (first.hydra.mode is not None and first.hydra.mode.name == "MULTIRUN")
+        folder = None
         if is_sweep:
             refuse_without_cluster(_launcher(first))
             folder = sweep_folder(_folder_of("hydra.sweep.dir", first), first, words_of(arguments))
@@ -98,7 +99,7 @@ def check_command_line(arguments: Namespace) -> Checked:
             configs[changed] = build.typed(config)
             build.check(configs[changed])
             whole[changed] = plain(config)
-    sweep = Sweep(folder, _claim(overrides, swept, whole)) if is_sweep else None
+    sweep = None if folder is None else Sweep(folder, _claim(overrides, swept, whole))
     return Checked(configs, tuple(override.get_key_element() for override in swept), sweep)
 
 
