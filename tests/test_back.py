@@ -111,3 +111,12 @@ def test_what_stands_on_a_scaled_back_stays():
 def test_a_back_is_scaled_by_positive_numbers(factor: float):
     with pytest.raises(ValueError, match="factor must be > 0 and finite"):
         Back(SQUARE).scaled(factor)
+
+
+def test_a_bodys_centre_reaches_as_far_as_its_radius_leaves():
+    corners = Back(SQUARE).corners_for(10)
+    assert {tuple(corner) for corner in corners.tolist()} == {(10, 10), (10, 90), (90, 10), (90, 90)}
+
+
+def test_a_body_that_does_not_fit_has_no_corners():
+    assert len(Back(SQUARE).corners_for(51)) == 0

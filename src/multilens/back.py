@@ -3,6 +3,9 @@
 from dataclasses import dataclass, replace
 from math import isfinite
 
+import numpy as np
+from jaxtyping import Float
+from shapely import get_coordinates
 from shapely.geometry.base import BaseGeometry
 
 from multilens.geometry import shape
@@ -113,6 +116,14 @@ class Back:
         for keep_out in self.keep_outs:
             region = region.difference(Shape(keep_out.shape.core, keep_out.shape.radius + keep_out.clearance).polygon())
         return region
+
+    def corners_for(self, body: float) -> Float[np.ndarray, "c 2"]:
+        """Give the corners of the convex hull of all places for a body's centre, mm; arcs are cut, none where it does not fit.
+
+        Args:
+            body: radius, mm, >= 0.
+        """
+        return get_coordinates(self.region().buffer(-body).convex_hull)
 
     @property
     def size(self) -> float:

@@ -7,6 +7,7 @@ from jaxtyping import Float
 from multilens.cues import NANOMETRE
 from multilens.problem import Problem
 from multilens.question import Question
+from multilens.search.gapless import Gapless
 from multilens.search.limits import Limits
 from multilens.search.variables import Variables
 
@@ -28,9 +29,10 @@ class Alone:
     Args:
         question: what is asked.
         variables: in float64, on the processor.
+        gapless: whether depths count as a range without gaps, where the score has a closed form.
     """
 
-    def __init__(self, question: Question, variables: Variables) -> None:
+    def __init__(self, question: Question, variables: Variables, gapless: bool = False) -> None:
         self.question, self.variables, self.n = question, variables, variables.count
         self.limits = Limits(question)
         self.free, self.stretch = variables.free.numpy(), variables.stretch.numpy()
@@ -39,14 +41,16 @@ class Alone:
         self.watched = np.empty(0, dtype=int)
         self.terms = self._by_autograd
         if isinstance(question, Problem) and question.has_closed_form:
-            self.terms = self._over_depths
+            self.terms = self._of_curves
             known = question.closed_form(torch.device("cpu"))
             self.noise = known.noise.numpy() if len(known.first) else np.empty(0)
             self.lens, self.tier = known.lens.numpy(), known.tier.numpy()
             self.slope_times_radius = known.slope_times_radius.numpy()
             self.focus_of = variables.tier_of.numpy()[self.lens, self.tier]
             self.depths = question.depths.numpy()
-            self.weights = question.score_weights.numpy() * self.depths**2
+            self.weights = question.score_weights.numpy()
+            self.second, self.every = self.weights * self.depths**2, np.arange(len(self.depths))
+            self.least = Gapless(self.depths, self.weights) if gapless else self._over_depths
 
     def room(self, x: Float[np.ndarray, " d"]) -> ValueAndGradient:
         """Give the room left at the pairs and edges that are near, mm, and its gradient."""
@@ -90,44 +94,42 @@ class Alone:
         (rows,) = torch.autograd.grad(values.sum(), points)
         return values.detach().numpy(), rows.numpy()
 
-    def _over_depths(self, x: Float[np.ndarray, " d"]) -> ValueAndGradient:
-        """Give the score of the thesis' cues and its gradient by plain sums over the depths.
+    def _of_curves(self, x: Float[np.ndarray, " d"]) -> ValueAndGradient:
+        """Give the score of the thesis' cues and its gradient.
 
-        Divided by the depth, stereo of the best pair is gain Z and defocus slope abs(Z - Zf): the least of them counts.
+        Divided by the depth, defocus is a V, slope abs(Z - Zf), and stereo of the best pair is gain Z, a V with its tip at 0.
         """
         position, radius, foci = self._parts(x)
-        gradient, n, depths = np.zeros(len(self.low)), self.n, self.depths
-        gain, best = np.inf, 0
-        first, second = self.limits.first, self.limits.second
-        away, distance = np.empty(0), np.empty(0)
+        gradient, n, first, second = np.zeros(len(self.low)), self.n, self.limits.first, self.limits.second
+        defocus = self.slope_times_radius / radius[self.lens]
+        slope, tip = defocus, foci[self.focus_of]
         if len(self.noise):
             away = position[first] - position[second]
             distance = np.maximum(np.sqrt((away**2).sum(-1)), NANOMETRE)
             best = (self.noise / distance).argmin()
             gain = self.noise[best] / distance[best]
-        score, by_stereo = 0.0, np.ones(len(depths), dtype=bool)
-        if len(self.lens):
-            slope = self.slope_times_radius / radius[self.lens]
-            miss = depths - foci[self.focus_of, None]
-            curves = np.abs(miss) * slope[:, None]
-            winner = curves.argmin(0)
-            every = np.arange(len(depths))
-            by_stereo = gain * depths < curves[winner, every]
-            missed = miss[winner, every]
-            weight = np.where(by_stereo, 0.0, self.weights)
-            count = len(slope)
-            drift = np.bincount(winner, weight * missed, count)
-            spread = np.bincount(winner, weight * missed**2, count)
-            score += (slope**2 * spread).sum()
-            np.add.at(gradient, 2 * n + self.lens, -2 * slope**2 * spread / radius[self.lens])
-            np.add.at(gradient, self.start + self.focus_of, -2 * slope**2 * drift * foci[self.focus_of])
-        if by_stereo.any() and np.isfinite(gain):
-            worth = (self.weights * depths**2)[by_stereo].sum()
-            score += gain**2 * worth
-            pull = -2 * gain**2 * worth / distance[best] ** 2 * away[best]
+            slope, tip = np.append(defocus, gain), np.append(tip, 0.0)
+            value, by_slope, by_tip = self.least(slope, tip)
+            pull = -by_slope[-1] * gain / distance[best] ** 2 * away[best]
             gradient[2 * first[best] : 2 * first[best] + 2] += pull
             gradient[2 * second[best] : 2 * second[best] + 2] -= pull
-        return np.array([score]), (gradient * self.stretch)[None, self.free]
+        else:
+            value, by_slope, by_tip = self.least(slope, tip)
+        count = len(defocus)
+        gradient[2 * n : self.start] = np.bincount(self.lens, -by_slope[:count] * defocus, n) / radius
+        gradient[self.start :] = np.bincount(self.focus_of, by_tip[:count], len(foci)) * foci
+        return np.array([value]), (gradient * self.stretch)[None, self.free]
+
+    def _over_depths(
+        self, slope: Float[np.ndarray, " k"], tip: Float[np.ndarray, " k"]
+    ) -> tuple[float, Float[np.ndarray, " k"], Float[np.ndarray, " k"]]:
+        """Give the mean of the least of (slope Z abs(Z - tip))^2 by plain sums, and its derivatives in slope and tip."""
+        miss = self.depths - tip[:, None]
+        winner = (np.abs(miss) * slope[:, None]).argmin(0)
+        missed = miss[winner, self.every]
+        drift = np.bincount(winner, self.second * missed, len(slope))
+        spread = np.bincount(winner, self.second * missed**2, len(slope))
+        return float(slope**2 @ spread), 2 * slope * spread, -2 * slope**2 * drift
 
     def _parts(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Give positions [n, 2], radii [n] and foci, all of all lenses in a row, mm."""

@@ -76,10 +76,29 @@ class Foci:
         orders = torch.cat([own, self._any_order(DEALT)])
         dealt = self._shared_out(share.expand(1 + DEALT, -1), orders)
         if self.dealing is not None:
-            dealt = torch.cat([dealt, self._dealt(share).unsqueeze(0)])
+            dealt = torch.cat([dealt, self.dealt(share).unsqueeze(0)])
         tried = torch.cat([share.unsqueeze(0), dealt, self._one_by_one(dealt, afresh=False)])
         with torch.no_grad():
             return tried[self._minimised(tried).argmin()]
+
+    def widest_nearest(self, share: Float[Tensor, "b v"]) -> Float[Tensor, "b v"]:
+        """Give the layouts with foci shared out, those of wider apertures nearer; as they are where none are shared out."""
+        if self.stretches is None:
+            return share
+        _, slope = self.closed_form.gain_and_slope(self.variables.layout_of(share))
+        return self._shared_out(share, slope[:, self.columns - self.variables.focus_start].argsort(-1).argsort(-1))
+
+    def dealt(self, share: Float[Tensor, " v"]) -> Float[Tensor, " v"]:
+        """Give one layout with the best foci for its apertures and its longest baseline; as it is where they cannot be told."""
+        if self.dealing is None:
+            return share
+        gain, slope = self.closed_form.gain_and_slope(self.variables.layout_of(share))
+        near, far = self.variables.low[self.variables.focus_start :], self.variables.high[self.variables.focus_start :]
+        foci = self.dealing.best_foci(gain.item(), *(each.cpu().double().numpy() for each in (slope, near, far)))
+        at = (torch.from_numpy(foci).to(near) / near).log() / (far / near).log()
+        share = share.clone()
+        share[self.columns] = at[self.columns - self.variables.focus_start].clamp(0, 1)
+        return share
 
     def _agreed(self, before: Tensor, after: Tensor) -> Tensor:
         """Give of each layout what scores less by the question itself."""
@@ -97,17 +116,6 @@ class Foci:
     def _any_order(self, count: int) -> Tensor:
         order = torch.rand(count, len(self.columns), generator=self.generator).argsort(-1)
         return order.to(self.columns.device)
-
-    def _dealt(self, share: Float[Tensor, " v"]) -> Float[Tensor, " v"]:
-        """Give one layout with the best foci for its apertures and its longest baseline."""
-        assert self.dealing is not None
-        gain, slope = self.closed_form.gain_and_slope(self.variables.layout_of(share))
-        near, far = self.variables.low[self.variables.focus_start :], self.variables.high[self.variables.focus_start :]
-        foci = self.dealing.best_foci(gain.item(), *(each.cpu().double().numpy() for each in (slope, near, far)))
-        at = (torch.from_numpy(foci).to(near) / near).log() / (far / near).log()
-        share = share.clone()
-        share[self.columns] = at[self.columns - self.variables.focus_start].clamp(0, 1)
-        return share
 
     def _shared_out(self, share: Tensor, order: Tensor) -> Tensor:
         """Give the layouts with the best foci for as many apertures of their mean width, dealt out in an order."""

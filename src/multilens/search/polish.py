@@ -39,6 +39,7 @@ def polish(
     x: Float[Tensor, " d"],
     deadline: float = inf,
     tolerance: float = 1e-13,
+    gapless: bool = False,
 ) -> Float[Tensor, " d"]:
     """Take one vector to the nearest local optimum of the exact score under the exact constraints.
 
@@ -52,6 +53,8 @@ def polish(
         x: where to begin; may be infeasible.
         deadline: by the monotonic clock, s.
         tolerance: change of the score, as a part of it, at which to stop.
+        gapless: whether depths count as a range without gaps where the score has a closed form: a first polish, which ripples
+            do not hold.
 
     Returns:
         The polished vector, feasible up to rounding unless the constraints cannot be met from here.
@@ -64,7 +67,7 @@ def polish(
     """
     if not len(x):
         return x
-    alone = Alone(question, variables)
+    alone = Alone(question, variables, gapless)
     for _ in range(ROUNDS):
         if not alone.watch(x.numpy()):
             break

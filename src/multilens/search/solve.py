@@ -1,7 +1,7 @@
 """Solve a question: begin from what is known and afresh, vary the best wave by wave, polish and prove the best of all."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
 from math import inf, nan
 from time import monotonic
@@ -10,12 +10,12 @@ import torch
 from torch import Tensor
 
 from multilens.bounds.bound import lower_bound
-from multilens.convergence import Convergence
 from multilens.design import COMPLETE, INFEASIBLE, OUT_OF_TIME, Design, Origin
 from multilens.layout import Layout
 from multilens.penalty import Price, distance_penalty
 from multilens.question import Question
 from multilens.search.barrier import BarrierSettings, Settled, settle
+from multilens.search.first import first_layouts
 from multilens.search.fit import why_nothing_fits
 from multilens.search.foci import Foci
 from multilens.search.legalise import legalise
@@ -27,6 +27,7 @@ from multilens.search.progress import BOUND, Listener, Progress
 from multilens.search.rough import at_few_depths
 from multilens.search.sight import Seer
 from multilens.search.starts import scattered_starts, tried_places
+from multilens.search.tally import Tally
 from multilens.search.threads import one_thread
 from multilens.search.tighten import tighten
 from multilens.search.variables import Variables
@@ -130,6 +131,7 @@ def solve(
         search = _Search(problem, Variables(problem, dtype, device), penalty, seed, end, listener)
         search.know(known, batch)
         if starts:
+            search.choose()
             search.open(starts, batch)
         if not search.alive:
             begun = starts + len(known)
@@ -137,7 +139,7 @@ def solve(
         search.vary(patience, batch)
         search.finish()
     best = search.best
-    convergence = search.convergence
+    convergence = search.tally.convergence
     if best.certificate.feasible:
         status = OUT_OF_TIME if search.out_of_time else COMPLETE
         if proof:
@@ -158,15 +160,6 @@ def _refuse_unless_of(question: Question, known: Sequence[Layout]) -> None:
             raise ValueError(f"known[{index}] must be one layout, its foci of shape {[lenses, tiers]}, got {shape}")
 
 
-@dataclass
-class _Tally:
-    """What the record of a search is made of."""
-
-    histories: list[Tensor]
-    polished: list[int]
-    scores: list[float]
-
-
 class _Search:
     """One search on its way: the best so far, and what the next wave begins from."""
 
@@ -184,8 +177,7 @@ class _Search:
         self.exact = Variables(question)
         self.limits = Limits(question)
         self.rough = at_few_depths(question)
-        self.seer = Seer(self.rough, variables)
-        self.price = penalty(question)
+        self.penalty = penalty
         self.generator = torch.Generator().manual_seed(seed)
         self.foci = Foci(self.rough, variables, self.generator)
         self.elite = Elite(MOST_ELITE)
@@ -194,25 +186,18 @@ class _Search:
         self.polished_values: list[float] = []
         self.out_of_time = False
         self.alive = 0
-        self.tally = _Tally([], [], [])
+        self.tally = Tally()
+
+    @cached_property
+    def seer(self) -> Seer:
+        """What looks at many layouts; made when the first wave asks, for the sketch does not wait for it."""
+        return Seer(self.rough, self.variables)
 
     @property
     def best(self) -> Candidate:
         """The best layout so far, as it would be claimed."""
         assert self.incumbent is not None
         return self.incumbent
-
-    @property
-    def convergence(self) -> Convergence | None:
-        """How the fresh starts came down; None where there were none."""
-        if not self.tally.histories:
-            return None
-        longest = max(history.shape[1] for history in self.tally.histories)
-        rows = [
-            torch.cat([history, history[:, -1:].expand(-1, longest - history.shape[1])], dim=-1)
-            for history in self.tally.histories
-        ]
-        return Convergence(tuple(range(longest)), torch.cat(rows), tuple(self.tally.polished), tuple(self.tally.scores))
 
     def know(self, known: Sequence[Layout], batch: int) -> None:
         """Claim layouts that are known, polish the best of them as it is, and settle all."""
@@ -230,12 +215,30 @@ class _Search:
             settled = self._settle(share, FROM_NEARBY, afresh=False)
             self._take(settled, None)
             # Settling may lead away from a layout that is as good as can be.
-            sight = self.seer.look(share, LAST)
-            self.elite.add(share, torch.where((sight.room >= 0).all(-1), sight.value, torch.inf))
+            self._keep(share)
+
+    def choose(self) -> None:
+        """Claim what is chosen before any wave, as it comes and polished."""
+        tried, foci = tried_places(self.question.back, self.seed), Foci(self.question, self.exact, self.generator)
+        first = first_layouts(self.question, self.exact, foci, self.limits, tried, self.generator, self.end)
+        polished = []
+        try:
+            for share in first:
+                self._claim(self.exact.layout_of(share))
+                self._tell("starts", 0.0, 0)
+                polished.append(polish(self.question, self.exact, share[self.exact.free], self.end, ROUGH))
+                self._claim(self.exact.layout(polished[-1]))
+                self._tell("starts", 0.0, 0)
+        except OutOfTimeError:
+            self.out_of_time = True
+        if polished:
+            share = self.exact.spread(torch.stack(polished)).to(self.variables.low)
+            self.seer.calibrate(share)
+            self._keep(share)
 
     def open(self, starts: int, batch: int) -> None:
         """Settle fresh starts, a batch at a time."""
-        radii = slice(2 * self.exact.count, self.exact.focus_start)
+        radii, price = slice(2 * self.exact.count, self.exact.focus_start), self.penalty(self.question)
         # The first answer is waited for: few layouts come first where many lenses make them slow.
         at_first = min(batch, max(1, LENSES_AT_FIRST // self.exact.count))
         for first, last in pairwise([0, *range(at_first, starts, batch), starts]):
@@ -244,7 +247,7 @@ class _Search:
             vectors = scattered_starts(self.question, self.exact, last - first, self.seed, first)
             share = self.exact.spread(vectors).to(self.variables.low)
             share[:, radii] *= 0.5
-            settled = self._settle(part(self.variables, self.price, share), FROM_AFAR, afresh=True)
+            settled = self._settle(part(self.variables, price, share), FROM_AFAR, afresh=True)
             self.tally.histories.append(self._scores(settled.history))
             self.alive += int(settled.value.isfinite().sum())
             self._take(settled, first)
@@ -274,6 +277,11 @@ class _Search:
             return
         self._claim(self.exact.layout(x))
         self.tell("polish", 1.0, self.alive)
+
+    def _keep(self, share: Tensor) -> None:
+        """Keep those that are feasible, as they are, to be varied."""
+        sight = self.seer.look(share, LAST)
+        self.elite.add(share, torch.where((sight.room >= 0).all(-1), sight.value, torch.inf))
 
     def _settle(self, share: Tensor, pressure: float, afresh: bool) -> Settled:
         settings = BarrierSettings(STEPS + STEPS_PER_LENS * self.exact.count, (pressure, LAST))

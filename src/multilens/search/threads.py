@@ -2,9 +2,10 @@
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import cache
 
 import torch
-from threadpoolctl import threadpool_limits
+from threadpoolctl import ThreadpoolController
 
 
 @contextmanager
@@ -15,13 +16,19 @@ def one_thread() -> Iterator[None]:
     beside it, a search on two threads took seven times as long as on one. And a library that shares its sums among threads
     rounds them in another order, which is enough to lead a polish to another optimum.
     """
-    # A library can only be held to one thread once it is loaded.
-    import scipy.optimize  # noqa: F401
-
     threads = torch.get_num_threads()
     torch.set_num_threads(1)
     try:
-        with threadpool_limits(limits=1, user_api="blas"):
+        with _libraries().limit(limits=1, user_api="blas"):
             yield
     finally:
         torch.set_num_threads(threads)
+
+
+@cache
+def _libraries() -> ThreadpoolController:
+    """Give the libraries with threads of their own; looking for them takes milliseconds and is done once."""
+    # A library can only be held to one thread once it is loaded.
+    import scipy.optimize  # noqa: F401
+
+    return ThreadpoolController()

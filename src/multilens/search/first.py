@@ -1,0 +1,74 @@
+"""What comes before any wave: a few layouts chosen with care, one by one, where the score has a closed form."""
+
+from collections.abc import Iterator
+
+import torch
+from jaxtyping import Float
+from torch import Generator, Tensor
+
+from multilens.problem import Problem
+from multilens.question import Question
+from multilens.search.foci import Foci
+from multilens.search.limits import Limits
+from multilens.search.packings import packings
+from multilens.search.polish import polish
+from multilens.search.sketch import sketch
+from multilens.search.tighten import tighten
+from multilens.search.variables import Variables
+
+PACKED = 16
+"""Packings of which the best are polished."""
+
+LENSES = 4
+"""Of all the packings that are polished: few lenses are quick, and of many a wave says more in the time."""
+
+ROUNDING = 1e-10
+"""Part of the back's diagonal by which an aperture may be below its largest and count as that."""
+
+ROUGH = 1e-5
+"""Part of the score to which they are polished as if depths had no gaps."""
+
+
+def first_layouts(
+    question: Question,
+    variables: Variables,
+    foci: Foci,
+    limits: Limits,
+    tried: tuple[Float[Tensor, "p 2"], Float[Tensor, " p"]],
+    generator: Generator,
+    deadline: float,
+) -> Iterator[Float[Tensor, " v"]]:
+    """Yield the sketch, if it is feasible, and unless all its apertures are as wide as they may be some packings.
+
+    Args:
+        question: what is asked.
+        variables: in float64.
+        foci: chooses foci.
+        limits: exact ones.
+        tried: places where lenses may stand, mm, and the body radius that fits around each, mm.
+        generator: of random numbers, on the processor.
+        deadline: by the monotonic clock, s.
+
+    Yields:
+        Vectors, every unknown; none where a lens has a place of its own or the score has no closed form.
+
+    Raises:
+        OutOfTimeError: the deadline passed.
+    """
+    known = isinstance(question, Problem) and question.has_closed_form
+    if not known or any(lens.position is not None for lens in question.lenses):
+        return
+    drawn = sketch(question, *tried)
+    if drawn is not None:
+        fitted = tighten(limits, drawn)
+        if limits(fitted).least >= 0:
+            yield foci.dealt(variables.spread(variables.vector(fitted)))
+            if (drawn.aperture_radius - fitted.aperture_radius).max() <= ROUNDING * question.back.size:
+                return
+    packed = packings(question, *tried, PACKED, generator)
+    with torch.no_grad():
+        ranked = foci.widest_nearest(variables.spread(variables.vector(packed)))
+        order = question.score(variables.layout_of(ranked)).argsort()
+    for at in order[: LENSES // len(question.lenses)].tolist():
+        x = polish(question, variables, ranked[at, variables.free], deadline, ROUGH, gapless=True)
+        yield foci.dealt(variables.spread(x))
