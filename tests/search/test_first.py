@@ -6,7 +6,7 @@ import pytest
 import torch
 
 import multilens as ml
-from multilens.search.first import LENSES, first_layouts
+from multilens.search.first import MOST_LENSES, first_layouts
 from multilens.search.foci import Foci
 from multilens.search.limits import Limits
 from multilens.search.polish import OutOfTimeError
@@ -45,10 +45,16 @@ def test_where_there_is_room_for_the_widest_apertures_the_sketch_is_as_good_as_c
 def test_crowded_lenses_come_to_local_optima(generator: torch.Generator) -> None:
     problem = eyes(2)
     found = chosen(problem, generator)
-    assert len(found) == LENSES // 2
     best = ml.solve(problem, starts=16, patience=4, proof=0)
     # They are polished as if depths had no gaps, to 1e-5.
     assert min(problem.score(layout).item() for layout in found) < 1.01 * best.score
+
+
+def test_packings_come_better_and_better(generator: torch.Generator) -> None:
+    problem = eyes(3)
+    scores = [problem.score(layout).item() for layout in chosen(problem, generator)]
+    assert scores
+    assert scores == sorted(scores, reverse=True)
 
 
 def test_what_is_chosen_is_feasible(generator: torch.Generator) -> None:
@@ -58,7 +64,7 @@ def test_what_is_chosen_is_feasible(generator: torch.Generator) -> None:
 
 
 def test_of_many_crowded_lenses_nothing_is_chosen(generator: torch.Generator) -> None:
-    assert chosen(eyes(LENSES + 1), generator) == []
+    assert chosen(eyes(MOST_LENSES + 1), generator) == []
 
 
 @pytest.mark.parametrize(

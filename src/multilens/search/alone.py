@@ -80,6 +80,9 @@ class Alone:
 
     def watch(self, x: Float[np.ndarray, " d"]) -> bool:
         """Look at the largest terms from here on, beside those so far; give whether the largest of all was not among these."""
+        if self.terms == self._of_curves:
+            first, self.watched = not len(self.watched), np.zeros(1, dtype=int)
+            return first
         with torch.no_grad():
             every = self.question.terms(self.variables.layout(torch.from_numpy(x))).numpy()
         overlooked = every.max() > every[self.watched].max(initial=-np.inf)

@@ -9,7 +9,7 @@ from jaxtyping import Float, Int
 from numpy.lib.stride_tricks import sliding_window_view
 
 MOST_ENDS = 512
-"""Places along the depths at which a stretch may begin or end."""
+"""Places along the depths at which a stretch may begin or end, unless told otherwise."""
 
 MOST_WORK = 1_500_000
 """Stretches that are compared; beyond, lenses of nearly equal slopes count as alike."""
@@ -66,12 +66,15 @@ class Dealing:
     Args:
         depths: mm, in any order.
         weights: how much each counts.
+        most_ends: places along the depths at which a stretch may begin or end; the time grows with the square.
     """
 
-    def __init__(self, depths: Float[np.ndarray, " z"], weights: Float[np.ndarray, " z"]) -> None:
+    def __init__(
+        self, depths: Float[np.ndarray, " z"], weights: Float[np.ndarray, " z"], most_ends: int = MOST_ENDS
+    ) -> None:
         order = depths.argsort(kind="stable")
         depth, weight = depths[order], weights[order]
-        ends = np.unique(np.linspace(0, len(depth), min(len(depth), MOST_ENDS) + 1).round().astype(int))
+        ends = np.unique(np.linspace(0, len(depth), min(len(depth), most_ends) + 1).round().astype(int))
         self.moments = [np.concatenate([[0.0], (weight * depth**power).cumsum()])[ends] for power in (2, 3, 4)]
         self.beside = depth[ends.clip(max=len(depth) - 1)]
         """The depth after each end, mm; after the last, the last."""

@@ -1,6 +1,7 @@
 """What comes before any wave: a few layouts chosen with care, one by one, where the score has a closed form."""
 
 from collections.abc import Iterator
+from math import inf
 
 import torch
 from jaxtyping import Float
@@ -19,8 +20,8 @@ from multilens.search.variables import Variables
 PACKED = 16
 """Packings of which the best are polished."""
 
-LENSES = 4
-"""Of all the packings that are polished: few lenses are quick, and of many a wave says more in the time."""
+TRIES, MOST_LENSES = 4, 4
+"""Packings that are polished, and the lenses up to which they are: of more lenses a wave says more in the time."""
 
 ROUNDING = 1e-10
 """Part of the back's diagonal by which an aperture may be below its largest and count as that."""
@@ -38,7 +39,7 @@ def first_layouts(
     generator: Generator,
     deadline: float,
 ) -> Iterator[Float[Tensor, " v"]]:
-    """Yield the sketch, if it is feasible, and unless all its apertures are as wide as they may be some packings.
+    """Yield the sketch, if it is feasible, and unless all its apertures are as wide as they may be packings, better and better.
 
     Args:
         question: what is asked.
@@ -65,10 +66,17 @@ def first_layouts(
             yield foci.dealt(variables.spread(variables.vector(fitted)))
             if (drawn.aperture_radius - fitted.aperture_radius).max() <= ROUNDING * question.back.size:
                 return
+    if len(question.lenses) > MOST_LENSES:
+        return
     packed = packings(question, *tried, PACKED, generator)
     with torch.no_grad():
         ranked = foci.widest_nearest(variables.spread(variables.vector(packed)))
         order = question.score(variables.layout_of(ranked)).argsort()
-    for at in order[: LENSES // len(question.lenses)].tolist():
+    best = inf
+    for at in order[:TRIES].tolist():
         x = polish(question, variables, ranked[at, variables.free], deadline, ROUGH, gapless=True)
-        yield foci.dealt(variables.spread(x))
+        share = foci.dealt(variables.spread(x), quickly=True)
+        score = question.score(variables.layout_of(share)).item()
+        if score < best:
+            best = score
+            yield share

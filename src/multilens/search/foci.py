@@ -17,6 +17,9 @@ from multilens.search.variables import Variables
 DEALT = 7
 """Ways to deal the shared-out foci to unequal lenses that are tried for the best layout, beside its own order."""
 
+QUICK_ENDS = 128
+"""Places along the depths at which a stretch may begin or end where foci are dealt quickly."""
+
 
 class Foci:
     """Chooses foci for layouts.
@@ -37,10 +40,12 @@ class Foci:
         self.columns = variables.free[variables.free >= variables.focus_start]
         self.stretches: Stretches | Piercing | None = None
         self.dealing: Dealing | None = None
+        self.quick_dealing: Dealing | None = None
         if isinstance(drawn := self.question, Problem) and len(self.columns) and _is_shared_out(drawn):
             self.closed_form = drawn.closed_form(device)
             if drawn.metric.is_mean:
                 self.dealing = Dealing(drawn.depths.numpy(), drawn.score_weights.numpy())
+                self.quick_dealing = Dealing(drawn.depths.numpy(), drawn.score_weights.numpy(), QUICK_ENDS)
             kind = Stretches if drawn.metric.is_mean else Piercing
             self.stretches = kind(drawn.depths.to(device), drawn.score_weights.to(device))
 
@@ -88,13 +93,17 @@ class Foci:
         _, slope = self.closed_form.gain_and_slope(self.variables.layout_of(share))
         return self._shared_out(share, slope[:, self.columns - self.variables.focus_start].argsort(-1).argsort(-1))
 
-    def dealt(self, share: Float[Tensor, " v"]) -> Float[Tensor, " v"]:
-        """Give one layout with the best foci for its apertures and its longest baseline; as it is where they cannot be told."""
-        if self.dealing is None:
+    def dealt(self, share: Float[Tensor, " v"], quickly: bool = False) -> Float[Tensor, " v"]:
+        """Give one layout with the best foci for its apertures and its longest baseline; as it is where they cannot be told.
+
+        Quickly they are nearly the best, and a polish is to follow.
+        """
+        dealing = self.quick_dealing if quickly else self.dealing
+        if dealing is None:
             return share
         gain, slope = self.closed_form.gain_and_slope(self.variables.layout_of(share))
         near, far = self.variables.low[self.variables.focus_start :], self.variables.high[self.variables.focus_start :]
-        foci = self.dealing.best_foci(gain.item(), *(each.cpu().double().numpy() for each in (slope, near, far)))
+        foci = dealing.best_foci(gain.item(), *(each.cpu().double().numpy() for each in (slope, near, far)))
         at = (torch.from_numpy(foci).to(near) / near).log() / (far / near).log()
         share = share.clone()
         share[self.columns] = at[self.columns - self.variables.focus_start].clamp(0, 1)

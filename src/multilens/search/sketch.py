@@ -1,5 +1,6 @@
 """A sketch: the layout that one would draw at once, lenses wide open, two of them as far apart as the back allows."""
 
+from functools import cache
 from itertools import combinations_with_replacement
 from math import hypot, inf
 
@@ -54,11 +55,14 @@ def _longest_baseline(problem: Problem) -> dict[int, np.ndarray]:
     alike: dict[tuple[float, float], list[int]] = {}
     for index, lens in enumerate(problem.lenses):
         alike.setdefault((_widest_body(lens), lens.disparity_noise / lens.focal_length), []).append(index)
-    corners = {body: problem.back.corners_for(body) for body, _ in alike}
+    corners_for = cache(problem.back.corners_for)
     least, ends = inf, {}
     for first, second in combinations_with_replacement(alike, 2):
-        mine, its = corners[first[0]], corners[second[0]]
-        if not len(mine) or not len(its) or (first == second and len(alike[first]) < 2):
+        # Both bodies in line are no longer than the back's diagonal, or they do not fit.
+        if 2 * (first[0] + second[0]) > problem.back.size or (first == second and len(alike[first]) < 2):
+            continue
+        mine, its = corners_for(first[0]), corners_for(second[0])
+        if not len(mine) or not len(its):
             continue
         away = np.hypot(*(mine[:, None] - its).transpose(2, 0, 1))
         one, other = np.unravel_index(away.argmax(), away.shape)

@@ -225,13 +225,13 @@ class _Search:
         try:
             for share in first:
                 self._claim(self.exact.layout_of(share))
-                self._tell("starts", 0.0, 0)
+                self.tell("starts", 0.0, 0)
                 polished.append(polish(self.question, self.exact, share[self.exact.free], self.end, ROUGH))
                 self._claim(self.exact.layout(polished[-1]))
-                self._tell("starts", 0.0, 0)
         except OutOfTimeError:
             self.out_of_time = True
         if polished:
+            self.tell("starts", 0.0, 0)
             share = self.exact.spread(torch.stack(polished)).to(self.variables.low)
             self.seer.calibrate(share)
             self._keep(share)
