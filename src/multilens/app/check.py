@@ -233,7 +233,7 @@ def _refuse_foreign_objects(key: str, node: Any) -> None:
 
 @contextmanager
 def _as_during_a_run(config: DictConfig) -> Iterator[None]:
-    # Where a folder goes may be told in terms of Hydra's own configuration, as during a run.
+    """Let what is told in terms of Hydra's own configuration be known, such as where a folder goes."""
     before = HydraConfig.instance().cfg
     HydraConfig.instance().set_config(config)
     try:
