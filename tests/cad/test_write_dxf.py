@@ -86,7 +86,7 @@ def test_another_program_sees_baselines_between_the_lenses(seen: dict, design: D
 
 
 def test_another_program_reads_the_names(seen: dict):
-    assert {text for _, text in seen["labels"]} >= {"flash", "round hexagon", "lens 1", "lens 3"}
+    assert {text for _, text in seen["labels"]} >= {"flash", "round hexagon", "1", "3"}
 
 
 def test_nothing_is_to_be_mended(path: Path):

@@ -10,6 +10,7 @@ from ezdxf.enums import TextEntityAlignment
 from ezdxf.layouts import Modelspace
 from ezdxf.units import MM
 
+from multilens.cad.labels import labels
 from multilens.cad.layers import APERTURES, BASELINES, BODIES, KEEP_OUTS, LABELS, OUTLINE, clean
 from multilens.cad.plan import Plan
 from multilens.cad.read_dxf import APPLICATION
@@ -55,17 +56,19 @@ def _without_time() -> Iterator[None]:
 
 
 def _draw(plan: Plan, space: Modelspace) -> None:
-    height = float(f"{TEXT * plan.back.size:.2g}")
     _draw_shape(space, plan.back.outline, OUTLINE, [])
     for keep_out in plan.back.keep_outs:
         _draw_shape(space, keep_out.shape, KEEP_OUTS, [(1000, clean(keep_out.name)), (1040, float(keep_out.clearance))])
-        _write(space, clean(keep_out.name), keep_out.shape.middle[0], keep_out.shape.bounds[1] - height, height)
     for stand in plan.stands:
         for layer, radius in ((APERTURES, stand.aperture_radius), (BODIES, stand.body_radius)):
             space.add_circle((stand.x, stand.y), radius, {"layer": layer})
-        _write(space, stand.name, stand.x, stand.y - stand.body_radius - height, height)
     for a, b, _ in plan.baselines:
         space.add_line((a.x, a.y), (b.x, b.y), {"layer": BASELINES})
+    height = float(f"{TEXT * plan.back.size:.2g}")
+    for label in labels(plan, height):
+        align = TextEntityAlignment.MIDDLE_CENTER if label.centred else TextEntityAlignment.MIDDLE_LEFT
+        text = space.add_text(label.words, height=height, dxfattribs={"layer": LABELS})
+        text.set_placement((label.x, label.y), align=align)
 
 
 def _draw_shape(space: Modelspace, shape: Shape, layer: str, tags: list[tuple[int, str | float]]) -> None:
@@ -77,8 +80,3 @@ def _draw_shape(space: Modelspace, shape: Shape, layer: str, tags: list[tuple[in
             entity = space.add_lwpolyline(rows, "xyb", close=True, dxfattribs={"layer": layer})
         if tags:
             entity.set_xdata(APPLICATION, tags)
-
-
-def _write(space: Modelspace, words: str, x: float, y: float, height: float) -> None:
-    text = space.add_text(words, height=height, dxfattribs={"layer": LABELS})
-    text.set_placement((x, y), align=TextEntityAlignment.MIDDLE_CENTER)

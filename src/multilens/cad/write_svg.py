@@ -7,6 +7,7 @@ import numpy as np
 from jaxtyping import Float
 
 from multilens.cad.curve import Curve
+from multilens.cad.labels import labels
 from multilens.cad.layers import APERTURES, BASELINES, BODIES, KEEP_OUTS, LABELS, OUTLINE, clean
 from multilens.cad.plan import Plan
 from multilens.cad.rims import bare, rims
@@ -23,8 +24,10 @@ LOOKS = {
 }
 """In the order of drawing."""
 
-PENS = {"thin": 0.001, "wide": 0.0025, "dash": 0.005, "text": 0.016}
-"""Widths and heights as parts of the diagonal of the back: of a phone 0.18, 0.44, 0.9 and 2.8 mm."""
+BEGINS = ' text-anchor="start"'
+
+PENS = {"thin": 0.001, "wide": 0.0025, "dash": 0.005, "text": 0.014}
+"""Widths and heights as parts of the diagonal of the back: of a phone 0.18, 0.44, 0.9 and 2.5 mm."""
 
 
 def write_svg(plan: Plan) -> str:
@@ -57,11 +60,10 @@ def _drawn(plan: Plan, layer: str, text: float) -> Iterator[str]:
             ends = f'x1="{a.x!r}" y1="{a.y!r}" x2="{b.x!r}" y2="{b.y!r}"'
             yield f"<line {ends}>{_title(f'{a.name} to {b.name}: {length:.3f} mm')}</line>"
     elif layer == LABELS:
-        for stand in stands:
-            yield f'<text x="{stand.x!r}" y="{stand.y + stand.body_radius + text!r}">{stand.number}</text>'
-        for keep_out in plan.back.keep_outs:
-            x, bottom = keep_out.shape.middle[0], keep_out.shape.bounds[3]
-            yield f'<text x="{x!r}" y="{bottom + text!r}">{escape(clean(keep_out.name))}</text>'
+        for label in labels(plan, text):
+            # Letters stand on a line a third of their height below their middle.
+            place = f'x="{label.x!r}" y="{label.y + text / 3!r}"{"" if label.centred else BEGINS}'
+            yield f"<text {place}>{escape(label.words)}</text>"
     else:
         for stand in stands:
             radius = stand.aperture_radius if layer == APERTURES else stand.body_radius
