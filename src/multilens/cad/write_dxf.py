@@ -60,7 +60,7 @@ def _draw(plan: Plan, space: Modelspace) -> None:
     for keep_out in plan.back.keep_outs:
         _draw_shape(space, keep_out.shape, KEEP_OUTS, [(1000, clean(keep_out.name)), (1040, float(keep_out.clearance))])
     for stand in plan.stands:
-        for layer, radius in ((APERTURES, stand.aperture_radius), (BODIES, stand.body_radius)):
+        for layer, radius in ((BODIES, stand.body_radius), (APERTURES, stand.aperture_radius)):
             space.add_circle((stand.x, stand.y), radius, {"layer": layer})
     for a, b, _ in plan.baselines:
         space.add_line((a.x, a.y), (b.x, b.y), {"layer": BASELINES})
