@@ -30,7 +30,12 @@ def page_figure(width: float, height: float) -> Figure:
 
 
 def inline_svg(
-    figure: Figure, name: str, label: str, titles: Mapping[str, str] | None = None, role: str = "img"
+    figure: Figure,
+    name: str,
+    label: str,
+    titles: Mapping[str, str] | None = None,
+    links: Mapping[str, str] | None = None,
+    role: str = "img",
 ) -> str:
     """Give a figure as an SVG element; the same figure gives the same text.
 
@@ -39,6 +44,7 @@ def inline_svg(
         name: with which every id begins, followed by a hyphen; the element itself has it as its id.
         label: what the picture shows, for those who cannot see it.
         titles: words that belong to a part, by the id that the part was given.
+        links: words that belong to a link, by where it leads.
         role: of the element; "group" where its parts are links.
     """
     text = StringIO()
@@ -54,6 +60,11 @@ def inline_svg(
             title = ElementTree.Element(f"{{{SVG}}}title")
             title.text = words
             element.insert(0, title)
+    for link in root.iter(f"{{{SVG}}}a"):
+        words = (links or {}).get(link.attrib["href"])
+        if words is not None:
+            link.attrib["aria-label"] = words
+            ElementTree.SubElement(link, f"{{{SVG}}}title").text = words
     del root.attrib["width"], root.attrib["height"]
     root.attrib |= {"id": name, "role": role, "aria-label": label}
     return ElementTree.tostring(root, encoding="unicode")
