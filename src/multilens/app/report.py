@@ -2,15 +2,14 @@
 
 from collections.abc import Sequence
 from pathlib import Path
-from time import monotonic
 
-from rich.console import Console
-
+from multilens.app.busy import busy
 from multilens.app.ending import DONE
 from multilens.app.refusal import RefusedError, one_line
 
 USAGE = """\
-multilens report RUN_FOLDER    one HTML file that tells of a saved run, with a slider of depths
+multilens report RUN_FOLDER      one HTML file that tells of a saved run, with a slider of depths
+multilens report SWEEP_FOLDER    one of a sweep: charts, layouts and table, linked job by job
 
 The file needs no server and no network. Its path is printed.
 
@@ -19,12 +18,10 @@ Options
 
 Examples
   multilens report runs/demo
+  multilens report sweeps/by_depth
   multilens report runs/demo out=phone.html"""
 
 OUT = "out="
-
-AT_ONCE = 2.0
-"""s; what takes no longer needs no telling."""
 
 
 def report_command(words: Sequence[str]) -> int:
@@ -59,18 +56,10 @@ def report_command(words: Sequence[str]) -> int:
     load_torch()
     from multilens.report.write import write_report
 
-    began, status = monotonic(), Console(stderr=True).status("")
-
-    def listen(read: int, every: int) -> None:
-        if monotonic() - began > AT_ONCE:
-            status.update(f"designs read: {read} of {every}")
-            status.start()
-
     try:
-        path = write_report(folder, outs[0] if outs else None, listen)
+        with busy("drawing the report") as say:
+            path = write_report(folder, outs[0] if outs else None, say)
     except ValueError as error:
         raise RefusedError(f"report: {one_line(str(error))}") from None
-    finally:
-        status.stop()
     print(path)
     return DONE

@@ -226,7 +226,7 @@ def _draw_leader(canvas: Canvas, box: Box, anchor: tuple[float, float], radius: 
     if length > radius + 4:
         share = radius / length
         start = (anchor[0] + share * (end[0] - anchor[0]), anchor[1] + share * (end[1] - anchor[1]))
-        canvas.line(start, end, color=FAINT, linewidth=0.6, zorder=7)
+        canvas.line(start, end, color=FAINT, linewidth=0.6, zorder=7, gid=f"leader-{box.x:.0f}-{box.y:.0f}")
 
 
 def _draw_scale_bar(canvas: Canvas, paper: Paper, outline: Shape) -> None:

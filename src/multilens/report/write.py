@@ -14,11 +14,11 @@ from multilens.sweeps.table import read_rows
 
 REPORT = "report.html"
 
-Listener = Callable[[int, int], None]
+Listener = Callable[[str], None]
 
 
 def write_report(
-    what: Design | str | Path, path: str | Path | None = None, listener: Listener = lambda read, all: None
+    what: Design | str | Path, path: str | Path | None = None, listener: Listener = lambda words: None
 ) -> Path:
     """Write one HTML file that tells of a design or a sweep: it needs no other file, no server and no network.
 
@@ -27,7 +27,7 @@ def write_report(
     Args:
         what: a design, or the folder of a run or of a sweep.
         path: of the file, which is replaced if it is there; None puts report.html into the folder.
-        listener: told how many designs of a sweep have been read, and how many there are to read.
+        listener: told what is being done, where that takes a while.
 
     Returns:
         The path of the file.
@@ -62,11 +62,12 @@ def _page_of_sweep(folder: Path, listener: Listener) -> str:
     unreadable: dict[int, str] = {}
     drawn = worth_drawing(rows)
     for read, row in enumerate(drawn):
-        listener(read, len(drawn))
+        listener(f"reading designs: {read} of {len(drawn)}")
         try:
             designs[row.job] = Design.load(folder / str(row.job) / DESIGN)
         except (ValueError, OSError) as error:
             unreadable[row.job] = str(error).replace(f"{folder / str(row.job)}/", "")
+    listener("drawing charts and layouts")
     return sweep_page([_marked(row, unreadable) for row in rows], designs)
 
 
