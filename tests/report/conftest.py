@@ -76,6 +76,12 @@ NOISE = 0.2 * 1.22e-3
 
 
 @pytest.fixture(scope="session")
+def hostile() -> str:
+    """What would run if a page took it for anything but text."""
+    return HOSTILE
+
+
+@pytest.fixture(scope="session")
 def design() -> Design:
     """Three lenses on a back of 60 by 90 mm, one of them with two foci, a keep-out with a hostile name."""
     lens = Lens(6.86, (0.5, 1.93), (200, 5000), 4.0, NOISE, NOISE)

@@ -1,9 +1,12 @@
 import pytest
 
 from multilens.report.run_page import run_page
+from multilens.report.sweep_page import sweep_page
 from multilens.report.write import estimates_in, write_report
-from multilens.runs import write_run
+from multilens.runs import write_design, write_run
 from multilens.storage import ESTIMATES
+from multilens.sweeps.job import row_of, write_job
+from multilens.sweeps.table import read_rows
 
 
 @pytest.fixture
@@ -46,3 +49,29 @@ def test_a_damaged_design_is_refused_and_an_older_report_stays(run):
 def test_estimates_are_those_lines_of_a_log_that_follow_their_head():
     assert estimates_in(f"a\n{ESTIMATES}\n  b: c\nd\n  e\n") == "b: c"
     assert estimates_in("a\n  b\n") == ""
+
+
+@pytest.fixture
+def sweep(design, tmp_path):
+    for job in (0, 1):
+        row = row_of(design, job, (("search.seed", str(job)),), 1.0)
+        write_job(tmp_path / str(job), "", row, lambda inside: write_design(inside, design))
+    return tmp_path
+
+
+def test_the_report_of_a_sweep_is_put_into_its_folder(sweep, design):
+    said = []
+    assert write_report(sweep, listener=said.append) == sweep / "report.html"
+    assert (sweep / "report.html").read_text(encoding="utf-8") == sweep_page(read_rows(sweep), {0: design, 1: design})
+    assert said == ["reading designs: 0 of 2", "reading designs: 1 of 2", "drawing charts and layouts"]
+
+
+def test_a_design_of_a_sweep_that_cannot_be_read_is_told(sweep):
+    (sweep / "1" / "design.json").write_text("{}")
+    text = write_report(sweep).read_text(encoding="utf-8")
+    assert '<td class="words">design.json: schema must be multilens.design, got None</td>' in text
+
+
+def test_a_folder_of_nothing_is_refused(tmp_path):
+    with pytest.raises(OSError, match=r"must hold a design\.json or the jobs of a sweep"):
+        write_report(tmp_path)

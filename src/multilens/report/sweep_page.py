@@ -153,7 +153,7 @@ def _table(rows: Sequence[SweepRow], keys: Mapping[str, Any]) -> Table | None:
     head, *lines = without_empty_columns(cells(rows))
     kept = [k for k, name in enumerate(head) if name not in same]
     shown = tuple(tuple(_shown(line[k]) for k in kept) for line in lines)
-    names = tuple(str(head[k]) for k in kept)
+    names = tuple(str(head[k]).replace("_", " ") for k in kept)
     words = tuple(k for k, column in enumerate(zip(*shown, strict=True)) if not all(map(_is_number, column)))
     caption = "Every job that found a design. A head sorts; a row, a point and a layout lead to the same job."
     return Table("jobs", caption, names, shown, words)
