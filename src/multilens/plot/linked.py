@@ -76,6 +76,8 @@ def linked_svg(
             frameon=False, fontsize=SMALL_FONT_SIZE, columnspacing=1.2, handletextpad=0.2, labelspacing=0.3, **place
         )
         draw_grid(ax)
+        # Numbers at the shorter minor ticks stand in line with the others.
+        ax.tick_params(which="minor", pad=5)
         return inline_svg(figure, name, label, links=links, role="group")
 
 
