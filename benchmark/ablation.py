@@ -54,6 +54,7 @@ def without_shared_out(self: Foci, share: Any) -> Any:
 
 IDEAS: dict[str, tuple[Without, dict[str, Any]]] = {
     "everything": (nullcontext, {}),
+    "without first layouts": (lambda: patch("multilens.search.solve.first_layouts", lambda *_: iter(())), {}),
     "without parting overlapping starts": (
         lambda: patch("multilens.search.solve.part", lambda variables, price, share: share),
         {},

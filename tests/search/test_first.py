@@ -50,7 +50,7 @@ def test_crowded_lenses_come_to_local_optima(generator: torch.Generator) -> None
     assert min(problem.score(layout).item() for layout in found) < 1.01 * best.score
 
 
-def test_packings_come_better_and_better(generator: torch.Generator) -> None:
+def test_what_comes_is_better_than_what_came_before(generator: torch.Generator) -> None:
     problem = eyes(3)
     scores = [problem.score(layout).item() for layout in chosen(problem, generator)]
     assert scores

@@ -3,7 +3,6 @@
 from collections.abc import Iterator
 from math import inf
 
-import torch
 from jaxtyping import Float
 from torch import Generator, Tensor
 
@@ -39,7 +38,7 @@ def first_layouts(
     generator: Generator,
     deadline: float,
 ) -> Iterator[Float[Tensor, " v"]]:
-    """Yield the sketch, if it is feasible, and unless all its apertures are as wide as they may be packings, better and better.
+    """Yield the sketch, if it is feasible, and unless all its apertures are as wide as can be what is better of some packings.
 
     Args:
         question: what is asked.
@@ -59,20 +58,20 @@ def first_layouts(
     known = isinstance(question, Problem) and question.has_closed_form
     if not known or any(lens.position is not None for lens in question.lenses):
         return
-    drawn = sketch(question, *tried)
+    drawn, best = sketch(question, *tried), inf
     if drawn is not None:
         fitted = tighten(limits, drawn)
         if limits(fitted).least >= 0:
-            yield foci.dealt(variables.spread(variables.vector(fitted)))
+            share = foci.dealt(variables.spread(variables.vector(fitted)))
+            best = question.score(variables.layout_of(share)).item()
+            yield share
             if (drawn.aperture_radius - fitted.aperture_radius).max() <= ROUNDING * question.back.size:
                 return
     if len(question.lenses) > MOST_LENSES:
         return
     packed = packings(question, *tried, PACKED, generator)
-    with torch.no_grad():
-        ranked = foci.widest_nearest(variables.spread(variables.vector(packed)))
-        order = question.score(variables.layout_of(ranked)).argsort()
-    best = inf
+    ranked = foci.widest_nearest(variables.spread(variables.vector(packed)))
+    order = question.score(variables.layout_of(ranked)).argsort()
     for at in order[:TRIES].tolist():
         x = polish(question, variables, ranked[at, variables.free], deadline, ROUGH, gapless=True)
         share = foci.dealt(variables.spread(x), quickly=True)

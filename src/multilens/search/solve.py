@@ -221,18 +221,16 @@ class _Search:
         """Claim what is chosen before any wave, as it comes and polished."""
         tried, foci = tried_places(self.question.back, self.seed), Foci(self.question, self.exact, self.generator)
         first = first_layouts(self.question, self.exact, foci, self.limits, tried, self.generator, self.end)
-        polished = []
         try:
             for share in first:
                 self._claim(self.exact.layout_of(share))
                 self.tell("starts", 0.0, 0)
-                polished.append(polish(self.question, self.exact, share[self.exact.free], self.end, ROUGH))
-                self._claim(self.exact.layout(polished[-1]))
+                self._polish(self.exact.layout_of(share))
+                self.tell("starts", 0.0, 0)
         except OutOfTimeError:
             self.out_of_time = True
-        if polished:
-            self.tell("starts", 0.0, 0)
-            share = self.exact.spread(torch.stack(polished)).to(self.variables.low)
+        if self.incumbent is not None:
+            share = self.variables.spread(self.variables.vector(self.incumbent.layout)).unsqueeze(0)
             self.seer.calibrate(share)
             self._keep(share)
 

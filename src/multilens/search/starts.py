@@ -1,5 +1,7 @@
 """Where the search begins: many layouts spread evenly over all that the question allows."""
 
+from functools import lru_cache
+
 import torch
 from jaxtyping import Float
 from torch import Tensor
@@ -44,6 +46,7 @@ def scattered_starts(
     return variables.vector(Layout(position, layout.aperture_radius, layout.focus))
 
 
+@lru_cache(maxsize=4)
 def tried_places(back: Back, seed: int) -> tuple[Float[Tensor, "p 2"], Float[Tensor, " p"]]:
     """Give points spread evenly over the back's bounding box, in no order, and the body radius that fits around each, mm."""
     left, top, right, bottom = back.outline.bounds
