@@ -2,7 +2,7 @@
 PYTHON ?= python3
 BIN := .venv/bin
 
-.PHONY: demo test docs studies bench format clean
+.PHONY: demo test docs studies bench bench-sweeps kills format clean
 
 demo: .venv/runtime
 	$(BIN)/multilens experiment=demo
@@ -25,6 +25,14 @@ studies: .venv/runtime
 # The search against general optimisers: `make bench`, or `make bench QUICK=1` for a minute's worth.
 bench: .venv/benchmark
 	$(BIN)/python -m benchmark.run $(if $(QUICK),--quick)
+
+# What a sweep costs beside its searches, and what a second worker brings: three minutes, on a machine that does nothing else.
+bench-sweeps: .venv/runtime
+	$(BIN)/python -m benchmark.sweeps
+
+# A sweep of 24 jobs, killed at 20 random moments and run again each time: five minutes.
+kills: .venv/runtime
+	$(BIN)/python -m benchmark.kills
 
 format: .venv/development
 	$(BIN)/ruff format .

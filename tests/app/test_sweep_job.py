@@ -218,6 +218,12 @@ def test_a_job_that_somebody_else_computes_is_waited_for_and_computed_when_he_is
     assert contents(folder) == contents(whole)
 
 
+def test_workers_find_what_one_process_finds(tmp_path: Path, whole: Path, monkeypatch) -> None:
+    launcher = ["hydra/launcher=joblib", "hydra.launcher.n_jobs=2"]
+    assert sweep(monkeypatch, tmp_path / "s", *SWEPT, *launcher) == 3
+    assert contents(tmp_path / "s") == contents(whole)
+
+
 def test_two_sweeps_in_one_folder_compute_each_job_once(tmp_path: Path) -> None:
     words = ["-m", *SMALL, "lenses.count=2,3", "search.seed=0,1,2", f"hydra.sweep.dir={tmp_path / 's'}"]
     command = [sys.executable, "-c", "from multilens.app import main; main()", *words]

@@ -56,10 +56,14 @@ def typed(config: DictConfig) -> Config:
     Raises:
         OmegaConfBaseException: a key is unknown, missing or of the wrong type.
     """
-    job = deepcopy(config)
-    with open_dict(job):
-        job.pop("hydra", None)
-    given = OmegaConf.to_object(OmegaConf.merge(OmegaConf.structured(Config), job))
+    job = config
+    if "hydra" in job:
+        job = deepcopy(job)
+        with open_dict(job):
+            job.pop("hydra")
+    if OmegaConf.get_type(job) is not Config:
+        job = OmegaConf.merge(OmegaConf.structured(Config), job)
+    given = OmegaConf.to_object(job)
     assert isinstance(given, Config)
     return given
 

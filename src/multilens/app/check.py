@@ -18,9 +18,10 @@ from multilens.app import build
 from multilens.app.compose import CONFIG_NAME, config_loader, open_hydra
 from multilens.app.keys import is_known, no_such_option, unknown_key
 from multilens.app.launcher import refuse_foreign_commands, refuse_without_cluster
+from multilens.app.plain import plain
 from multilens.app.refusal import RefusedError, one_line
 from multilens.app.schema import Config
-from multilens.app.sweep_folder import Sweep, claim_of, plain, sweep_folder, words_of
+from multilens.app.sweep_folder import Sweep, claim_of, sweep_folder, words_of
 from multilens.app.telling import told_in_one_line
 from multilens.app.yaml_limits import refuse_wild_folders
 from multilens.sweeps.claim import Claim
@@ -95,7 +96,9 @@ def check_command_line(arguments: Namespace) -> Checked:
         configs: dict[str, Config] = {}
         whole: dict[str, dict[str, Any]] = {}
         for changed, lines in _each_value(overrides, swept, loader):
-            config = composed(config_name, lines)
+            # A value of ours cannot change what of Hydra's has been looked at; a file can.
+            chooses_file = bool(loader.get_group_options(changed.partition("=")[0]))
+            config = composed(config_name, lines) if chooses_file or not changed else compose(config_name, lines)
             configs[changed] = build.typed(config)
             build.check(configs[changed])
             whole[changed] = plain(config)

@@ -6,6 +6,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from hydra import version
+from hydra._internal.config_loader_impl import ConfigLoaderImpl
 from hydra._internal.hydra import Hydra
 from hydra._internal.utils import create_config_search_path
 from hydra.core.config_loader import ConfigLoader
@@ -13,6 +14,7 @@ from hydra.core.config_search_path import SearchPathQuery
 from hydra.core.global_hydra import GlobalHydra
 
 from multilens.app.presets import config_folder
+from multilens.app.quick_loader import QuickLoader
 from multilens.app.schema import register
 
 CONFIG_NAME = "config"
@@ -31,10 +33,17 @@ def open_hydra(arguments: Namespace) -> Iterator[None]:
         )
     GlobalHydra.instance().clear()
     try:
-        Hydra.create_main_hydra2("multilens", search_path)
+        hydra = Hydra.create_main_hydra2("multilens", search_path)
+        quicken(hydra)
         yield
     finally:
         GlobalHydra.instance().clear()
+
+
+def quicken(hydra: Hydra) -> None:
+    """Have a Hydra that is set up compose what it has composed before from memory; presets must stay as they are meanwhile."""
+    assert isinstance(hydra.config_loader, ConfigLoaderImpl)
+    hydra.config_loader = QuickLoader(hydra.config_loader)
 
 
 def config_loader() -> ConfigLoader:

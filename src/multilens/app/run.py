@@ -8,12 +8,13 @@ from typing import NoReturn
 
 from hydra.core.hydra_config import HydraConfig
 from hydra.types import RunMode
-from omegaconf import DictConfig, OmegaConf
+from omegaconf import DictConfig
 
 from multilens.app.answer import answer
 from multilens.app.busy import busy
 from multilens.app.ending import BAD_INPUT, BROKEN_PIPE, NOTHING_FOUND, SYSTEM_FAILED, tell
 from multilens.app.loading import load_torch
+from multilens.app.plain import plain, yaml_text
 from multilens.app.refusal import RefusedError
 from multilens.app.search import NothingFoundError
 
@@ -76,7 +77,7 @@ def _run_alone(config: DictConfig, folder: Path, overrides: list[str], as_json: 
 
     def write() -> list[Path]:
         with busy("drawing the pictures"):
-            write_run(folder, found.design, OmegaConf.to_yaml(config, resolve=True), log)
+            write_run(folder, found.design, yaml_text(plain(config)), log)
         return [from_here(path) for path in sorted(folder.iterdir())]
 
     answer(said, found.design, write, as_json)

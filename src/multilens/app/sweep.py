@@ -4,18 +4,28 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from hydra.core.global_hydra import GlobalHydra
 from hydra.experimental.callback import Callback
 from omegaconf import DictConfig
 
 from multilens.app.agreeing import let_neighbours_agree
+from multilens.app.compose import quicken
 from multilens.app.drawing import pictures_drawn
 from multilens.app.ending import BAD_INPUT, NOTHING_FOUND, SYSTEM_FAILED, tell
+from multilens.app.loading import one_thread_for_workers
 from multilens.app.refusal import RefusedError
 from multilens.sweep_row import Cell
 
 
 class SweepTable(Callback):
     """Writes and prints the table of a sweep when its last job has ended; Hydra calls it once, where the sweep was started."""
+
+    def on_multirun_start(self, config: DictConfig, **kwargs: Any) -> None:
+        """Have workers compute with one thread each, and configurations composed quickly."""
+        one_thread_for_workers()
+        hydra = GlobalHydra.instance().hydra
+        assert hydra is not None
+        quicken(hydra)
 
     def on_multirun_end(self, config: DictConfig, **kwargs: Any) -> None:
         """Wait for what others compute, let neighbours agree, write the table of the jobs' folders, draw its pictures, print it.

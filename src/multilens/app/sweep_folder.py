@@ -89,14 +89,6 @@ def open_sweep(sweep: Sweep) -> None:
         end_moving(sweep.folder)
 
 
-def plain(config: DictConfig) -> dict[str, Any]:
-    """Give a composed configuration as plain data, resolved, without Hydra's own part."""
-    ours = OmegaConf.masked_copy(config, [str(key) for key in config if key != "hydra"])
-    given = OmegaConf.to_container(ours, resolve=True, enum_to_str=True)
-    assert isinstance(given, dict)
-    return {str(key): value for key, value in given.items()}
-
-
 def refuse_other_versions(claim: Claim) -> None:
     """Refuse to add to a sweep that began with other versions, as on another computer of a cluster.
 

@@ -10,10 +10,11 @@ from omegaconf import DictConfig, OmegaConf
 
 from multilens.app.ending import tell
 from multilens.app.loading import load_torch
+from multilens.app.plain import plain, yaml_text
 from multilens.app.refusal import RefusedError, one_line
 from multilens.app.search import NothingFoundError
 from multilens.app.searched import Searched, from_here, log_text, searched
-from multilens.app.sweep_folder import plain, refuse_other_versions
+from multilens.app.sweep_folder import refuse_other_versions
 from multilens.app.waiting import leave_waiting
 from multilens.storage import made_with
 from multilens.sweep_row import FAILED, SweepRow
@@ -60,13 +61,19 @@ def compute_if_missing(config: DictConfig, folder: Path, overrides: Sequence[str
     except OtherJobError:
         raise RefusedError(_why_another(folder, question)) from None
     if kept is None:
-        _compute(config, folder, overrides, claim.fixed, mark, visible)
+        _compute(config, folder, overrides, claim.fixed, mark, yaml_text(question), visible)
     forget(folder.parent, folder.name)
     return kept is None
 
 
 def _compute(
-    config: DictConfig, folder: Path, overrides: Sequence[str], fixed: Sequence[str], mark: str, visible: bool
+    config: DictConfig,
+    folder: Path,
+    overrides: Sequence[str],
+    fixed: Sequence[str],
+    mark: str,
+    config_text: str,
+    visible: bool,
 ) -> None:
     load_torch(visible)
     from multilens.metrics import in_words
@@ -85,7 +92,7 @@ def _compute(
     def write_files(inside: Path) -> None:
         if isinstance(found, Searched):
             write_design(inside, found.design)
-        write_words(inside, OmegaConf.to_yaml(config, resolve=True), log_text(overrides, *lines))
+        write_words(inside, config_text, log_text(overrides, *lines))
 
     write_job(folder, mark, row, write_files)
     print(f"{from_here(folder)}: {' '.join(f'{key}={value}' for key, value in settings)}: {told}", flush=True)

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from omegaconf import DictConfig, OmegaConf
 
+from multilens.app.plain import plain, yaml_text
 from multilens.storage import write_whole
 from multilens.sweeps.locks import forget, held
 
@@ -27,7 +28,7 @@ def leave_waiting(config: DictConfig, folder: Path, overrides: Sequence[str]) ->
     with held(folder.parent, name):
         write_whole(
             folder.parent / f"{name}.yaml",
-            OmegaConf.to_yaml({"overrides": list(overrides), "config": config}, resolve=True),
+            yaml_text({"overrides": list(overrides), "config": plain(config)}),
         )
 
 
