@@ -108,7 +108,8 @@ def check_command_line(arguments: Namespace) -> Checked:
 
 def _claim(overrides: list[Override], swept: list[Override], configs: dict[str, dict[str, Any]]) -> Claim:
     keys = {override.get_key_element(): _line(override).partition("=")[2] for override in swept}
-    fixed = [key for override in overrides if (key := override.get_key_element()) not in keys]
+    ours = [override.get_key_element() for override in overrides if not override.is_hydra_override()]
+    fixed = [key for key in ours if key not in keys]
     return claim_of(fixed, keys, configs)
 
 
