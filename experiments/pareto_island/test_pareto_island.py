@@ -15,7 +15,7 @@ WIDTHS, APERTURES, COUNTS = ("34", "42", "50", "58"), ("[1.78,11]", "[2.8,11]", 
 ROUNDING = 1e-6
 """Part of a score by which neighbours in a sweep may differ: less is a matter of rounding."""
 
-Key = tuple[str, str, str]
+Key = tuple[str, ...]
 
 
 @pytest.fixture(scope="module")
@@ -27,10 +27,10 @@ def rows() -> dict[Key, dict[str, str]]:
         }
 
 
-def neighbours(key: Key, axis: int, values: tuple[str, ...]) -> Key | None:
+def before(key: Key, axis: int, values: tuple[str, ...]) -> Key | None:
     """Give the key with the value before in one of its three parts."""
     k = values.index(key[axis])
-    return None if k == 0 else (*key[:axis], values[k - 1], *key[axis + 1 :])  # type: ignore[return-value]
+    return None if k == 0 else tuple(values[k - 1] if part == axis else own for part, own in enumerate(key))
 
 
 def test_there_is_a_job_for_every_combination(rows: dict[Key, dict[str, str]]) -> None:
@@ -59,14 +59,14 @@ def test_more_room_or_a_wider_aperture_is_never_worse(
 ) -> None:
     # Stopping down forbids what was allowed before, and a smaller island lies in a larger one.
     for key, row in rows.items():
-        less = neighbours(key, axis, values)
+        less = before(key, axis, values)
         if less is not None and rows[less]["score"]:
             assert float(row["score"]) <= float(rows[less]["score"]) * (1 + ROUNDING), key
 
 
 def test_a_camera_more_is_never_worse_or_the_row_says_why(rows: dict[Key, dict[str, str]]) -> None:
     for key, row in rows.items():
-        fewer = neighbours(key, 2, COUNTS)
+        fewer = before(key, 2, COUNTS)
         if fewer is None:
             continue
         if not row["score"]:

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from math import ceil
 from textwrap import wrap
+from typing import Any
 
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
@@ -91,12 +92,18 @@ def sheet(width: float, below: float, title: str, notes: Sequence[str] = (), key
         y = 1 - (TITLE + NOTE * (k + 0.6)) / height
         figure.text(LEFT / width, y, line, fontsize=FONT_SIZE - 1.5, color=FAINT, **look)
     if key:
-        place = {
+        place: dict[str, Any] = {
             "loc": "upper left",
             "bbox_to_anchor": ((LEFT - 0.02) / width, 1 - under_title / height),
             "ncols": columns,
         }
-        space = {"borderaxespad": 0.0, "borderpad": 0.2, "columnspacing": 1.6, "handlelength": 2.2, "labelspacing": 0.4}
+        space: dict[str, Any] = {
+            "borderaxespad": 0.0,
+            "borderpad": 0.2,
+            "columnspacing": 1.6,
+            "handlelength": 2.2,
+            "labelspacing": 0.4,
+        }
         legend = figure.legend(handles=list(key), frameon=False, fontsize=SMALL_FONT_SIZE, **place, **space)
         for text in legend.get_texts():
             text.set_parse_math(False)

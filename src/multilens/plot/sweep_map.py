@@ -73,12 +73,13 @@ def map_figure(rows: Sequence[SweepRow]) -> Figure | None:
     page = sheet(width, len(kept) * (ABOVE_AXES + high + below), title, notes)
     for k, band in enumerate(kept):
         scale = scale_of([row for group in band for row in group.found])
+        maps: list[tuple[Axes, QuadMesh]] = []
         for column, group in enumerate(band):
             ax = page.panel(k, column, columns, high, below, in_words(group.settings, names))
             _narrow(ax, left, BAR)
-            cells = draw_map(ax, group, pair, (across[1], up[1]), scale)
+            maps.append((ax, draw_map(ax, group, pair, (across[1], up[1]), scale)))
             ax.set(xlabel=across[0], ylabel=up[0])
-        _draw_bar(ax, cells, band[0].quantity)
+        _draw_bar(*maps[-1], band[0].quantity)
     return page.figure
 
 
