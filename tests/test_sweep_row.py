@@ -2,7 +2,7 @@ import json
 
 import pytest
 
-from multilens.sweep_row import SweepRow, cells, read_row
+from multilens.sweep_row import SweepRow, cells, in_order, read_row
 
 FOUND = SweepRow(
     3, (("lenses.count", "2"), ("depth", "room")), "complete", lens_count=2, metric="RMSE", figure=0.1, rmse=0.1
@@ -45,3 +45,15 @@ def test_a_table_has_a_column_for_every_key_that_was_swept():
 
 def test_a_line_of_a_table_is_as_long_as_its_head():
     assert {len(line) for line in cells([FOUND, FAILED])} == {len(cells([])[0]) + 2}
+
+
+@pytest.mark.parametrize(
+    ("values", "ordered"),
+    [
+        (["10", "9", "-1e1", "9"], ["-1e1", "9", "10"]),
+        (["room", "near", "room"], ["room", "near"]),
+        (["9", "null", "1"], ["9", "null", "1"]),
+    ],
+)
+def test_numbers_are_in_order_by_size_and_words_as_they_come(values, ordered):
+    assert in_order(values) == ordered

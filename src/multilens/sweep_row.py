@@ -1,6 +1,6 @@
 """What came of one job of a sweep, as the numbers that its tables, its pictures and its agreement need."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass, fields
 from typing import Any
 
@@ -108,6 +108,15 @@ def cells(rows: Sequence[SweepRow]) -> list[list[Cell]]:
         [plain["job"], *(settings.get(key) for key in keys), *(plain[name] for name in after)]
         for plain, settings in lines
     ]
+
+
+def in_order(values: Iterable[str]) -> list[str]:
+    """Give the values of a swept key, each once, in order: numbers by their size, words as they come."""
+    named = list(dict.fromkeys(values))
+    try:
+        return sorted(named, key=float)
+    except ValueError:
+        return named
 
 
 def _read(kind: Any, value: object, name: str) -> Cell:

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from math import sqrt
 
-from multilens.sweep_row import SweepRow
+from multilens.sweep_row import SweepRow, in_order
 
 ASKED = ("experiment", "depth", "field_of_view", "cues", "scene", "metric", "fusion", "robust", "tolerance")
 """First parts of the keys that say what is asked of a device, not what it is: errors under different ones compare nothing."""
@@ -46,7 +46,7 @@ def varied(rows: Iterable[SweepRow]) -> dict[str, tuple[str, ...]]:
     for row in rows:
         for key, value in row.settings:
             values.setdefault(key, {})[value] = None
-    return {key: tuple(_ordered(each)) for key, each in values.items() if len(each) > 1}
+    return {key: tuple(in_order(each)) for key, each in values.items() if len(each) > 1}
 
 
 def is_asked(key: str) -> bool:
@@ -142,11 +142,3 @@ def quantity_of(groups: Iterable[Group]) -> str:
     """Give what the figures of several groups are, such as RMSE (mm); error where they differ."""
     kinds = {group.quantity for group in groups}
     return kinds.pop() if len(kinds) == 1 else "Error"
-
-
-def _ordered(values: Iterable[str]) -> list[str]:
-    named = list(values)
-    try:
-        return sorted(named, key=float)
-    except ValueError:
-        return named

@@ -11,6 +11,7 @@ from multilens.question import Question
 from multilens.records import problem_record
 from multilens.search.neighbours import carried_over
 from multilens.search.solve import solve
+from multilens.sweep_row import in_order
 
 Settings = Sequence[tuple[str, str]]
 Listener = Callable[[int, int], None]
@@ -74,7 +75,7 @@ def neighbours(settings: Mapping[int, Settings]) -> dict[int, list[int]]:
     """
     rows = {job: [value for _, value in settings[job]] for job in sorted(settings)}
     ranks = [
-        {value: rank for rank, value in enumerate(_ordered(column))} for column in zip(*rows.values(), strict=True)
+        {value: rank for rank, value in enumerate(in_order(column))} for column in zip(*rows.values(), strict=True)
     ]
     places = {job: tuple(rank[value] for rank, value in zip(ranks, row, strict=True)) for job, row in rows.items()}
     at = {place: job for job, place in places.items()}
@@ -133,14 +134,6 @@ def _is_fewer(one: Design, other: Design) -> bool:
     """Whether a design has some of the other's lenses and no more, and its score reads the same."""
     few, many = Counter(one.problem.lenses), Counter(other.problem.lenses)
     return few < many and one.problem.metric == other.problem.metric
-
-
-def _ordered(values: Sequence[str]) -> list[str]:
-    named = list(dict.fromkeys(values))
-    try:
-        return sorted(named, key=float)
-    except ValueError:
-        return named
 
 
 def _as_text(question: Question) -> str:
