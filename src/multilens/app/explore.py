@@ -87,9 +87,6 @@ def explore_command(words: Sequence[str]) -> int:
         RefusedError: the words cannot be understood, or the folder is another exploration's; one line.
         OSError: the folder cannot be read or written.
     """
-    if any(word in ("--help", "-h") for word in words):
-        print(USAGE)
-        return DONE
     if find_spec("optuna") is None:
         raise RefusedError("explore must have Optuna, which is not installed: pip install 'multilens[optuna]'")
     own = [word for word in words if word.partition("=")[0] in ("minimise", "out", *NUMBERS)]
