@@ -90,6 +90,11 @@ def test_settings_are_said_by_short_names():
     assert in_words(settings, {"lenses.count": "count", "depth": "depth"}) == "count 3, depth room"
 
 
+def test_an_index_does_not_stand_alone():
+    keys = ("lenses.lens.f_number.0", "lenses.count", "lenses.places.3.0")
+    assert list(short_names(keys).values()) == ["f_number.0", "count", "places.3.0"]
+
+
 def test_few_jobs_without_a_design_are_named_and_many_counted():
     found = [SweepRow(0, (), "complete", figure=1.0)]
     few = [SweepRow(job, (), "infeasible") for job in (3, 8)]

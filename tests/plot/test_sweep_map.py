@@ -70,6 +70,13 @@ def test_what_belongs_to_the_device_comes_first(swept, keys, pair):
     assert axes_of_the_map(swept(keys, lambda s: 1.0)) == pair
 
 
+def test_there_is_no_map_of_numbers_that_were_chosen_freely(swept):
+    numbers = [f"{30 + k / 7:.4f}" for k in range(12)]
+    rows = swept({"back.outline.width": numbers, "lenses.lens.f_number.0": numbers}, lambda s: 1.0)
+    assert map_figure(rows) is not None
+    assert map_figure([rows[13 * k] for k in range(12)]) is None
+
+
 @pytest.mark.parametrize("many", [2, 20])
 def test_words_keep_apart_however_many_and_long_values_are(swept, clear, many):
     values = [f"a_value_that_is_very_long_{k}" for k in range(many)]

@@ -99,12 +99,13 @@ def bound_figure(row: SweepRow) -> float | None:
 
 
 def short_names(keys: Iterable[str]) -> dict[str, str]:
-    """Give for each key as much of its end as no other ends with: count for lenses.count."""
+    """Give for each key as much of its end as no other ends with, an index not alone: count for lenses.count, f_number.0."""
     parts = {key: key.lstrip("+~").split(".") for key in keys}
     names = {}
     for key, own in parts.items():
         others = [each for other, each in parts.items() if other != key]
-        fewest = next((k for k in range(1, len(own)) if all(each[-k:] != own[-k:] for each in others)), len(own))
+        told = (k for k in range(1, len(own)) if not own[-k].isdecimal())
+        fewest = next((k for k in told if all(each[-k:] != own[-k:] for each in others)), len(own))
         names[key] = ".".join(own[-fewest:])
     return names
 

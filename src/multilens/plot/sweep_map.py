@@ -1,7 +1,7 @@
 """The error over two swept keys, a cell for each pair of values."""
 
 from collections.abc import Sequence
-from math import ceil
+from math import ceil, prod
 
 import numpy as np
 from matplotlib import colormaps
@@ -44,6 +44,9 @@ SMALLEST_PRINT = 6.0
 """Points; in cells too small for that no number is written."""
 
 
+SPARSEST = 0.1
+"""Part of all combinations of the values that must have been tried: of numbers that were chosen freely a map shows nothing."""
+
 MOST_ROWS, MOST_COLUMNS = 4, 3
 """Of maps in a figure."""
 
@@ -84,11 +87,13 @@ def map_figure(rows: Sequence[SweepRow]) -> Figure | None:
 
 
 def axes_of_the_map(rows: Sequence[SweepRow]) -> tuple[str, str] | None:
-    """Give the two keys that a map shows, across and up; None where fewer than two vary that leave the unit as it is.
+    """Give the two keys that a map shows, across and up; None where fewer than two vary that leave the unit as it is, or freely.
 
     Of the device before of the search, and that before of what was asked; and keys of many values before those of few.
     """
     keys = varied(rows)
+    if len(rows) < SPARSEST * prod(map(len, keys.values())):
+        return None
     alike = [key for key in keys if len({_kinds(group) for group in grouped(rows, [key]) if group.found}) == 1]
     ranked = sorted(alike, key=lambda key: (_rank(key), -len(keys[key])))
     return (ranked[0], ranked[1]) if len(ranked) > 1 else None
