@@ -163,6 +163,17 @@ DEEP = "<g>" * 100 + "</g>" * 100
         (svg('<rect id="outline" width="-4" height="5"/>'), "width must be a plain finite number, >= 0, got '-4'"),
         (svg('<rect width="4" height="5"/>'), "got none there; the file has the layers none"),
         (svg('<g transform="rotate(x)"><rect id="outline" width="4" height="5"/></g>'), "transform must be one, got"),
+        (
+            svg(f'<g transform="{"translate(" * 20_000}">{SQUARE}</g>'),
+            "transform must be at most 1000 characters, got 200000",
+        ),
+        (
+            svg(f'<polygon id="outline" points="0,0 1,1 {"9" * 10_000}"/>'),
+            "points must be a plain finite number, got '999",
+        ),
+        (svg('<polygon id="outline" points="0,0 1,1 2"/>'), "points must be pairs of numbers, got 5 numbers"),
+        (svg('<path id="outline" d="M 0 0 A 5 5e7 0 0 1 10 5 Z"/>'), "curve must be at most 10000 edges"),
+        (svg('<path id="outline" d="M 0 0 L 5 5 Z"/>'), "curve must have at least 3 corners, got 2"),
         (svg(SQUARE, 'width="100mm" height="200mm" viewBox="0 0 0 200"'), "viewBox must be a plain finite number"),
     ],
 )

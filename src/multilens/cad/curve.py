@@ -8,6 +8,9 @@ from jaxtyping import Float
 
 from multilens.geometry.shape import refuse_wild_coordinates
 
+MOST_POINTS = 10_000
+"""Of a curve that is cut into edges, and of what is made of several."""
+
 NOTHING = 1e-9
 """mm; a shorter piece is what rounding leaves of none."""
 
@@ -79,6 +82,9 @@ class Curve:
 
         Args:
             sagitta: largest distance of an edge from its arc, mm, > 0.
+
+        Raises:
+            ValueError: it takes more than `MOST_POINTS` edges.
         """
         corners, arcs = [], iter(zip(self.centres, self.radii, strict=True))
         for start, bulge in zip(self.points, self.bulges, strict=True):
@@ -89,6 +95,7 @@ class Curve:
                 # No fewer than eight edges to a circle: of a small one they would be far off in direction.
                 step = min(2 * acos(max(1 - sagitta / radius, -1.0)), np.pi / 4)
                 count = ceil(abs(angle) / step)
+                refuse_too_many(count + sum(map(len, corners)))
                 turned = angle * np.arange(1, count) / count
                 cosine, sine = np.cos(turned)[:, None], np.sin(turned)[:, None]
                 x, y = start - centre
@@ -113,3 +120,9 @@ def tidy(points: Float[np.ndarray, "m 2"], bulges: Float[np.ndarray, " m"], exac
     if kept.sum() < 2:
         raise ValueError(f"curve must have at least 2 points apart, got {kept.sum()}")
     return Curve(points[kept], bulges[kept], exact)
+
+
+def refuse_too_many(count: int) -> None:
+    """Raise a ValueError for more than `MOST_POINTS` edges."""
+    if count > MOST_POINTS:
+        raise ValueError(f"curve must be at most {MOST_POINTS} edges, got {count}: a larger tolerance needs fewer")

@@ -8,7 +8,7 @@ import ezdxf
 import numpy as np
 from ezdxf import edgeminer, edgesmith, upright
 from ezdxf.document import Drawing as Document
-from ezdxf.entities import Circle, DXFEntity, Ellipse, LWPolyline, Polyline, Spline
+from ezdxf.entities import Circle, DXFEntity, DXFTagStorage, Ellipse, LWPolyline, Polyline, Spline
 from ezdxf.lldxf.const import DXFError
 from ezdxf.units import MM, conversion_factor
 
@@ -46,6 +46,8 @@ NOTES = {
 CURVES = {"LINE", "ARC", "CIRCLE", "ELLIPSE", "SPLINE", "LWPOLYLINE", "POLYLINE"}
 
 
+# What is not finite numpy warns of; a curve refuses it.
+@np.errstate(all="ignore")
 def read_dxf(text: str, units: str | None, tolerance: float) -> Drawing:
     """Read the model space of a drawing, y upwards; heights above the plane are not looked at.
 
@@ -59,15 +61,22 @@ def read_dxf(text: str, units: str | None, tolerance: float) -> Drawing:
     """
     try:
         document = ezdxf.read(StringIO(text))
-    except (DXFError, ValueError, IndexError, KeyError, AttributeError, TypeError) as error:
+    except (DXFError, ValueError, ArithmeticError, LookupError, AttributeError, TypeError, RecursionError) as error:
         raise ValueError(f"DXF must be whole, got {type(error).__name__}: {error}") from None
     factor = scale_of(units, _units(document), f"$INSUNITS={document.units}", "units=mm")
     layers: dict[str, list[DXFEntity]] = {}
     for entity in document.modelspace():
         if entity.dxftype() not in NOTES:
-            layers.setdefault(entity.dxf.layer, []).append(entity)
+            layers.setdefault(_layer(entity), []).append(entity)
     parts = [part for layer, entities in layers.items() for part in _parts(layer, entities, factor, tolerance)]
     return Drawing(tuple(_together(parts)), y_up=True)
+
+
+def _layer(entity: DXFEntity) -> str:
+    """Give the layer of an entity, also of one of a type that ezdxf knows nothing else of."""
+    if isinstance(entity, DXFTagStorage):
+        return str(entity.graphic_properties().get("layer", "0"))
+    return entity.dxf.layer
 
 
 def _units(document: Document) -> float | None:
@@ -86,6 +95,8 @@ def _parts(layer: str, entities: Sequence[DXFEntity], factor: float, tolerance: 
                 yield Part((layer,), (curve,), *_said(entity, factor))
         except ValueError as error:
             yield Part((layer,), fault=f"a {entity.dxftype()} {error}")
+        except RecursionError:
+            yield Part((layer,), fault=f"a {entity.dxftype()} must not bend without measure")
     yield from _loops(layer, loose, factor, tolerance)
 
 
@@ -147,6 +158,8 @@ def _loops(layer: str, loose: list[DXFEntity], factor: float, tolerance: float) 
             yield Part((layer,), (_joined(chain, factor, tolerance),))
         except ValueError as error:
             yield Part((layer,), fault=f"lines and arcs that meet: {error}")
+        except RecursionError:
+            yield Part((layer,), fault="lines and arcs that meet must not bend without measure")
 
 
 def _joined(chain: Sequence[edgeminer.Edge], factor: float, tolerance: float) -> Curve:

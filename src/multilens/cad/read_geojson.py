@@ -23,6 +23,8 @@ ALTERED = 1e-6
 """mm; a geometry that differs by more from the core that it is said to be grown from was altered."""
 
 
+# What is not finite numpy warns of; a curve refuses it.
+@np.errstate(all="ignore")
 def read_geojson(text: str, units: str | None) -> Drawing:
     """Read the polygons of a FeatureCollection, a Feature or a geometry, y upwards.
 
@@ -98,9 +100,8 @@ def _part(feature: object, factor: float, where: str) -> Part | None:
 def _geometry(content: object, kind: object) -> Any:
     """Read a geometry; whatever shapely stumbles over is refused."""
     try:
-        with np.errstate(invalid="ignore"):
-            return geometry_of(content)
-    except (ShapelyError, AttributeError, KeyError, TypeError, ValueError, IndexError) as error:
+        return geometry_of(content)
+    except (ShapelyError, OverflowError, AttributeError, KeyError, TypeError, ValueError, IndexError) as error:
         raise ValueError(f"GeoJSON must be well formed, got a damaged {kind!r:.40}: {error}") from None
 
 

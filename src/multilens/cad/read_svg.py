@@ -10,7 +10,7 @@ import numpy as np
 import svgelements
 from svgelements import Arc, Close, CubicBezier, Line, Matrix, Move, Path, QuadraticBezier
 
-from multilens.cad.curve import Curve, tidy
+from multilens.cad.curve import Curve, refuse_too_many, tidy
 from multilens.cad.drawing import Drawing, Part
 from multilens.cad.units import scale_of
 
@@ -35,9 +35,11 @@ ALIKE = 1e-3
 CIRCULAR = 1e-9
 """Part of a radius by which both of an arc may differ."""
 
-MOST_ELEMENTS, DEEPEST = 20_000, 64
+MOST_ELEMENTS, DEEPEST, LONGEST_TRANSFORM = 20_000, 64, 1000
 
 
+# What is not finite numpy warns of; a curve refuses it.
+@np.errstate(all="ignore")
 def read_svg(text: str, units: str | None, tolerance: float) -> Drawing:
     """Read the shapes of an SVG that are drawn, y downwards.
 
@@ -53,7 +55,7 @@ def read_svg(text: str, units: str | None, tolerance: float) -> Drawing:
     """
     root = _root(text)
     factor = scale_of(units, _millimetres(root), "width, height and viewBox", "units=mm")
-    parts = _parts(root, Matrix(root.get("transform", "")), (), factor, tolerance)
+    parts = _parts(root, _matrix(root.get("transform", "")), (), factor, tolerance)
     return Drawing(tuple(parts), y_up=False)
 
 
@@ -131,10 +133,7 @@ def _parts(element: Element, above: Matrix, layers: tuple[str, ...], factor: flo
         if "none" in (child.get("display"), _style(child).get("display")):
             continue
         inside = (*layers, *dict.fromkeys(names))
-        try:
-            matrix = Matrix(child.get("transform", "")) * above
-        except (ValueError, IndexError, TypeError) as error:
-            raise ValueError(f"transform must be one, got {child.get('transform', '')!r:.40}: {error}") from None
+        matrix = _matrix(child.get("transform", "")) * above
         if kind in GROUPS:
             yield from _parts(child, matrix, inside, factor, tolerance)
         elif kind in ELSEWHERE:
@@ -152,6 +151,23 @@ def _parts(element: Element, above: Matrix, layers: tuple[str, ...], factor: flo
                 yield Part(inside, fault=str(error))
 
 
+def _matrix(transform: str) -> Matrix:
+    # svgelements looks through what is no transform again and again.
+    if len(transform) > LONGEST_TRANSFORM:
+        raise ValueError(f"transform must be at most {LONGEST_TRANSFORM} characters, got {len(transform)}")
+    try:
+        return Matrix(transform)
+    except (ValueError, IndexError, TypeError) as error:
+        raise ValueError(f"transform must be one, got {transform!r:.40}: {error}") from None
+
+
+def _pairs(points: str) -> list[tuple[float, float]]:
+    numbers = [_number("points", word) for word in points.replace(",", " ").split()]
+    if len(numbers) % 2:
+        raise ValueError(f"points must be pairs of numbers, got {len(numbers)} numbers")
+    return list(zip(numbers[::2], numbers[1::2], strict=True))
+
+
 def _style(element: Element) -> dict[str, str]:
     pairs = (rule.partition(":") for rule in element.get("style", "").split(";"))
     return {name.strip(): value.strip() for name, _, value in pairs}
@@ -162,7 +178,7 @@ def _path(element: Element, kind: str, matrix: Matrix) -> Path:
         if kind == "path":
             shape: Any = Path(element.get("d", ""))
         elif kind in POINTED:
-            shape = POINTED[kind](element.get("points", ""))
+            shape = POINTED[kind](_pairs(element.get("points", "")))
         else:
             shape = ROUND[kind](
                 **{name: _number(name, element.get(name, "0")) for name in NUMBERS if name in element.attrib}
@@ -187,14 +203,14 @@ def _curve(segments: list[Any], factor: float, tolerance: float) -> Curve:
     for segment in segments:
         if isinstance(segment, Arc) and isclose(segment.rx, segment.ry, rel_tol=CIRCULAR):
             # Halves: of nearly a whole circle the bulge would be without measure.
-            points += [segment.start, segment.point(0.5)]
-            bulges += [tan(segment.sweep / 8)] * 2
+            count, bulge = 2, tan(segment.sweep / 8)
         else:
-            count = 1 if isinstance(segment, Line | Close) else _edges(segment, tolerance / factor / 2)
+            count, bulge = 1 if isinstance(segment, Line | Close) else _edges(segment, tolerance / factor / 2), 0.0
             exact = exact and count == 1
-            points += [segment.point(index / count) for index in range(count)]
-            bulges += [0.0] * count
-    ring = factor * np.array([(point.x, point.y) for point in [*points, segments[-1].end]])
+        points.append(segment.npoint(np.arange(count) / count))
+        bulges += [bulge] * count
+    end = segments[-1].end
+    ring = factor * np.concatenate([*points, [(end.x, end.y)]])
     apart = float(np.hypot(*(ring[-1] - ring[0])))
     if not isinstance(segments[-1], Close) and not apart <= CIRCULAR * max(np.abs(ring).max(), 1.0):
         raise ValueError(f"curve must be closed, got ends {apart:g} mm apart, at ({ring[0][0]:g}, {ring[0][1]:g}) mm")
@@ -211,4 +227,7 @@ def _edges(segment: Any, sagitta: float) -> int:
         assert isinstance(segment, CubicBezier)
         first, second = segment.control1, segment.control2
         bend = 6 * max(abs(segment.start - 2 * first + second), abs(first - 2 * second + segment.end))
-    return max(2, ceil(sqrt(bend / (8 * sagitta)))) if isfinite(bend) else 2
+    # What is not finite is refused with its points.
+    count = max(2, ceil(sqrt(bend / (8 * sagitta)))) if isfinite(bend) else 2
+    refuse_too_many(count)
+    return count

@@ -14,6 +14,8 @@ from multilens.cad.units import scale_of
 MOST_LINES = 1000
 
 
+# What is not finite numpy warns of; a curve refuses it.
+@np.errstate(all="ignore")
 def read_wkt(text: str, units: str | None) -> Drawing:
     """Read the geometries of a text, y upwards.
 
@@ -31,9 +33,7 @@ def read_wkt(text: str, units: str | None) -> Drawing:
     parts = []
     for number, line in enumerate(lines, 1):
         try:
-            # Of what is not finite numpy warns; a curve refuses it.
-            with np.errstate(invalid="ignore"):
-                geometry = shapely.from_wkt(line)
+            geometry = shapely.from_wkt(line)
         except ShapelyError as error:
             raise ValueError(f"line {number} must be well-known text, got {line[:40]!r}: {error}") from None
         parts.append(Part((KEEP_OUTS if parts else OUTLINE,), curves_of(geometry, factor, f"line {number}")))

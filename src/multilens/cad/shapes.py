@@ -6,7 +6,7 @@ import numpy as np
 from jaxtyping import Float
 from shapely import MultiPoint, MultiPolygon, Polygon
 
-from multilens.cad.curve import Curve
+from multilens.cad.curve import Curve, refuse_too_many
 from multilens.geometry.shape import Shape
 
 SAME = 1e-6
@@ -14,9 +14,6 @@ SAME = 1e-6
 
 DECIMALS = 9
 """Of a millimetre, to which centres and radii are rounded: what arcs lose when they are written as their ends."""
-
-MOST_POINTS = 10_000
-"""Of the shape that comes out."""
 
 
 def shape_of(curves: Sequence[Curve], within: bool, tolerance: float) -> tuple[Shape, float]:
@@ -40,8 +37,7 @@ def shape_of(curves: Sequence[Curve], within: bool, tolerance: float) -> tuple[S
     if grown is not None:
         return grown, 0.0
     corners = [curve.cut(tolerance / 2) for curve in curves]
-    if (count := sum(map(len, corners))) > MOST_POINTS:
-        raise ValueError(f"shape must have at most {MOST_POINTS} points, got {count}: a larger tolerance needs fewer")
+    refuse_too_many(sum(map(len, corners)))
     whole = _nested([_polygon(ring) for ring in corners])
     if all(curve.straight for curve in curves):
         return Shape(whole), 0.0
@@ -77,6 +73,8 @@ def _apart(points: Float[np.ndarray, "a 2"]) -> list[tuple[float, float]]:
 
 
 def _polygon(ring: np.ndarray) -> Polygon:
+    if len(ring) < 3:
+        raise ValueError(f"curve must have at least 3 corners, got {len(ring)}")
     polygon = Polygon(ring)
     Shape(polygon)
     return polygon
