@@ -1,5 +1,8 @@
 """DXF, by ezdxf: closed curves of every layer, and loops of lines and arcs that meet."""
 
+# ezdxf documents the names that are taken from it, and does not list them as exported.
+# pyright: reportPrivateImportUsage=false
+
 from collections.abc import Iterator, Sequence
 from io import StringIO
 from math import hypot
@@ -8,9 +11,10 @@ import ezdxf
 import numpy as np
 from ezdxf import edgeminer, edgesmith, upright
 from ezdxf.document import Drawing as Document
-from ezdxf.entities import Circle, DXFEntity, DXFTagStorage, Ellipse, LWPolyline, Polyline, Spline
+from ezdxf.entities import Circle, DXFEntity, DXFGraphic, DXFTagStorage, Ellipse, LWPolyline, Polyline, Spline
+from ezdxf.enums import InsertUnits
 from ezdxf.lldxf.const import DXFError
-from ezdxf.units import MM, conversion_factor
+from ezdxf.units import conversion_factor
 
 from multilens.cad.curve import Curve, circle, tidy
 from multilens.cad.drawing import Drawing, Part
@@ -80,7 +84,9 @@ def _layer(entity: DXFEntity) -> str:
 
 
 def _units(document: Document) -> float | None:
-    return None if document.units == 0 else float(conversion_factor(document.units, MM))
+    return (
+        None if document.units == 0 else float(conversion_factor(InsertUnits(document.units), InsertUnits.Millimeters))
+    )
 
 
 def _parts(layer: str, entities: Sequence[DXFEntity], factor: float, tolerance: float) -> Iterator[Part]:
@@ -104,6 +110,7 @@ def _refuse_unless_flat(entity: DXFEntity) -> None:
     """Refuse what is no curve in the plane of x and y; one drawn from below is turned to the same curve from above."""
     if entity.dxftype() not in CURVES:
         raise ValueError("cannot be read: explode it into curves, or put it on another layer")
+    assert isinstance(entity, DXFGraphic)
     upright.upright(entity)
     across, along, up = entity.dxf.get("extrusion", (0, 0, 1))
     if max(abs(across), abs(along)) > FLAT * up:

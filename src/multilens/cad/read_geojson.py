@@ -97,7 +97,7 @@ def _part(feature: object, factor: float, where: str) -> Part | None:
     return Part(layers, curves, name, None if clearance is None else factor * number(clearance, f"{where}.clearance"))
 
 
-def _geometry(content: object, kind: object) -> Any:
+def _geometry(content: Any, kind: object) -> Any:
     """Read a geometry; whatever shapely stumbles over is refused."""
     try:
         return geometry_of(content)

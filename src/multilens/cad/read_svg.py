@@ -1,5 +1,8 @@
 """SVG: shapes by group or id, transformed and scaled to millimetres; their geometry by svgelements."""
 
+# What svgelements has parsed has numbers and points where its types allow None.
+# pyright: reportOptionalOperand=false, reportOperatorIssue=false
+
 from collections.abc import Iterator
 from math import ceil, isclose, isfinite, sqrt, tan
 from typing import Any

@@ -1,5 +1,8 @@
 """A plan as DXF, by ezdxf: in millimetres, y upwards, a layer for each kind of thing."""
 
+# ezdxf documents the names that are taken from it, and does not list them as exported.
+# pyright: reportPrivateImportUsage=false
+
 from collections.abc import Iterator
 from contextlib import contextmanager
 from io import StringIO
