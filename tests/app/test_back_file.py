@@ -10,6 +10,7 @@ from multilens.app.back_file import told_of_file
 from multilens.app.build import build_back
 from multilens.app.command import run_command
 from multilens.app.given import read_given
+from multilens.app.schema_file import sha256_of
 from multilens.back import Back
 from multilens.cad.export import export
 from multilens.design import Design
@@ -63,6 +64,25 @@ def test_a_run_says_what_it_read_and_keeps_it(monkeypatch: pytest.MonkeyPatch, c
     assert said in Path("run/run.log").read_text()
     assert Design.load("run/design.json").problem.back == BACK
     assert len(yaml.safe_load(Path("run/config.yaml").read_text())["back"]["file"]["sha256"]) == 64
+
+
+def test_a_design_is_not_lost_with_its_drawing(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]):
+    from multilens.app import searched
+
+    real = searched.search
+
+    def search_and_lose(*given: object, **more: object) -> Design:
+        Path("phone.svg").write_text("something else")
+        return real(*given, **more)  # pyright: ignore[reportArgumentType] -- what was given is handed on
+
+    monkeypatch.setattr(searched, "search", search_and_lose)
+    monkeypatch.setattr("multilens.runs._draw", lambda design, folder: None)
+    words = ["back=file", "back.file.path=phone.svg", "hydra.run.dir=run", *QUICK]
+    before = sha256_of("phone.svg")
+    monkeypatch.setattr("sys.argv", ["multilens", *words])
+    assert run_command(words) == 0, capsys.readouterr().err
+    assert Design.load("run/design.json").problem.back == BACK
+    assert yaml.safe_load(Path("run/config.yaml").read_text())["back"]["file"]["sha256"] == before
 
 
 def test_a_file_that_has_changed_since_is_refused(capsys: pytest.CaptureFixture[str]):

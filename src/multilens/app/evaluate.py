@@ -87,8 +87,9 @@ def evaluate_command(words: Sequence[str]) -> int:
     with busy("scoring"):
         if asked.path is None:
             assert given is not None
+            told = notes(given.config, given.keys)
             design, text = _within(_of_configuration(given), given), given.text
-            lines = [account(design, chosen=True), notes(given.config, given.keys)]
+            lines = [account(design, chosen=True), told]
         else:
             design = _within(_of_file(asked.path, given), given)
             text = f"design: {asked.path}\noverrides: {list(asked.lines)}\n"

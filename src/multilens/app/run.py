@@ -46,6 +46,8 @@ def run_job(config: DictConfig, as_json: bool = False) -> None:
     # Workers of other launchers share one terminal: a bar of each would overwrite the others'.
     in_process = not in_sweep or "basic_launcher" in hydra.launcher._target_
     try:
+        # Once and first: the checksum of a drawing is that of the one which is read, whatever becomes of it meanwhile.
+        OmegaConf.resolve(config)
         if in_sweep:
             from multilens.app.sweep_job import run_sweep_job
 
@@ -67,11 +69,11 @@ def _run_alone(config: DictConfig, folder: Path, overrides: list[str], as_json: 
     from multilens.app.searched import from_here, log_text, searched
     from multilens.runs import write_run
 
+    marks = _estimates(config)
     try:
         found = searched(config, visible=True)
     except NothingFoundError as reason:
         _leave(NOTHING_FOUND, reason)
-    marks = _estimates(config)
     said = "\n\n".join(filter(None, [str(found.design), marks]))
     log = log_text(overrides, *found.log, f"searched for {found.seconds:.1f} s", marks)
 
