@@ -2,7 +2,7 @@
 PYTHON ?= python3
 BIN := .venv/bin
 
-.PHONY: demo test docs studies bench bench-sweeps kills format clean
+.PHONY: demo test wheel-test docs studies bench bench-sweeps kills format clean
 
 demo: .venv/runtime
 	$(BIN)/multilens experiment=demo
@@ -13,6 +13,13 @@ test: .venv/development
 	$(BIN)/basedpyright
 	$(BIN)/lint-imports
 	$(BIN)/pytest -n auto --dist loadgroup
+
+# The wheel in an empty environment, with all that it asks for: some minutes, and PyTorch again.
+wheel-test: .venv/development
+	$(BIN)/python -m hatchling build -d .venv/dist
+	$(PYTHON) -m venv --clear .venv/wheel
+	.venv/wheel/bin/python -m pip install --quiet --constraint constraints.txt "$$(ls -t .venv/dist/*.whl | head -1)[cad]"
+	WHEEL_PYTHON=$(CURDIR)/.venv/wheel/bin/python $(BIN)/pytest tests/test_wheel.py
 
 # The documentation as a site, in site/; `mkdocs serve` shows it while you write.
 docs: .venv/development
