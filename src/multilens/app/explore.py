@@ -11,10 +11,11 @@ from omegaconf import DictConfig, OmegaConf
 from multilens.app.ending import DONE, NOTHING_FOUND, tell
 from multilens.app.given import read_given
 from multilens.app.loading import load_torch
+from multilens.app.plain import plain
 from multilens.app.refusal import RefusedError, meant, refused_at
 from multilens.app.space import Asked, read_space
 from multilens.app.sweep import aligned
-from multilens.app.sweep_folder import claim_of, plain
+from multilens.app.sweep_folder import claim_of
 from multilens.app.sweep_job import compute_if_missing
 from multilens.storage import write_whole
 from multilens.sweep_row import COLUMN, Cell, SweepRow, cells

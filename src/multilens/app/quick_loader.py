@@ -27,7 +27,7 @@ class QuickLoader(ConfigLoaderImpl):
     """Hydra's loader of configurations, with a memory; it can be handed to workers, each of which has a memory of its own."""
 
     def __init__(self, loader: ConfigLoaderImpl) -> None:
-        self.__dict__.update(loader.__dict__)
+        vars(self).update(vars(loader))
         # Files may change between two sweeps of one process.
         self.own = token_hex(8)
 

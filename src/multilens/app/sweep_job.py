@@ -126,8 +126,8 @@ def _why_another(folder: Path, question: Mapping[str, Any]) -> str:
     from multilens.runs import CONFIG
 
     try:
-        before = OmegaConf.to_container(OmegaConf.load(folder / CONFIG))
+        read: Any = OmegaConf.to_container(OmegaConf.load(folder / CONFIG))
     except OSError:
-        before = {}
-    told = difference(asked(before), asked(question)) if isinstance(before, dict) else ""
+        read = {}
+    told = difference(asked(read), asked(question)) if isinstance(read, dict) else ""
     return f"{folder} holds another job: {told or 'it was made with other versions'}; name another folder, or remove that one"
