@@ -25,7 +25,7 @@ Options
   --cfg job                print the configuration that would be run, and run nothing
   --config-dir FOLDER      take presets of your own as well
   hydra.run.dir=FOLDER     where the run folder goes (runs/NAME/DATE_TIME)
-  hydra.sweep.dir=FOLDER   where the folder of a sweep goes (sweeps/NAME/DATE_TIME)
+  hydra.sweep.dir=FOLDER   where the folder of a sweep goes (sweeps/NAME/MARK, by its words)
 
 Examples
   multilens design experiment=demo
