@@ -1,7 +1,7 @@
 import pytest
 from matplotlib.lines import Line2D
 
-from multilens.plot.sheet import sheet
+from multilens.plot.sheet import FOOT, sheet
 from multilens.plot.style import style
 
 
@@ -24,9 +24,9 @@ def test_axes_have_the_inches_that_were_asked_for():
     page = sheet(9.0, 4.0, "A title", ["a note"])
     box = page.panel(0, 1, 2, 3.0, 0.6, "a panel").get_window_extent()
     assert box.height / page.figure.dpi == pytest.approx(3.0)
-    assert box.y0 / page.figure.dpi == pytest.approx(4.0 - 3.0 - 0.36, abs=1e-6)
+    assert box.y0 / page.figure.dpi == pytest.approx(4.0 - 3.0 - 0.36 + FOOT, abs=1e-6)
 
 
-def test_axes_below_the_head_end_where_the_paper_does():
+def test_axes_below_the_head_end_above_the_foot():
     page = sheet(9.0, 4.0, "A title", ["a note"], key(3))
-    assert page.axes(0.0, 0.0, 9.0, 4.0).get_window_extent().y0 == pytest.approx(0, abs=1e-6)
+    assert page.axes(0.0, 0.0, 9.0, 4.0).get_window_extent().y0 / page.figure.dpi == pytest.approx(FOOT)

@@ -25,6 +25,9 @@ SHEET_WIDTH, WIDE_WIDTH = 9.0, 13.333
 LEFT_OF_AXES, ABOVE_AXES, RIGHT_OF_AXES = 0.9, 0.36, 0.25
 """Inches around a panel for its numbers and words."""
 
+FOOT = 0.2
+"""Inches at the foot for a remark."""
+
 LETTER = 0.082
 """Width of a letter of a note, inches, as they are on average; a little more."""
 
@@ -61,7 +64,7 @@ class Sheet:
     def say_below(self, words: str) -> None:
         """Write a remark in the lower right corner."""
         look = {"ha": "right", "va": "bottom", "color": FAINT, "parse_math": False}
-        self.figure.text(0.99, 0.01, words, fontsize=0.8 * SMALL_FONT_SIZE, **look)
+        self.figure.text(0.99, 0.06 / self.figure.get_size_inches()[1], words, fontsize=0.8 * SMALL_FONT_SIZE, **look)
 
 
 def width_for(columns: int) -> float:
@@ -84,7 +87,7 @@ def sheet(width: float, below: float, title: str, notes: Sequence[str] = (), key
     columns = _columns(figure, key)
     under_title = TITLE + NOTE * len(lines)
     head = under_title + (KEY * ceil(len(key) / columns) + 0.05 if key else 0.0) + 0.12
-    height = head + below
+    height = head + below + FOOT
     figure.set_size_inches(width, height)
     look = {"ha": "left", "parse_math": False}
     figure.text(LEFT / width, 1 - 0.5 / height, title, fontsize=TITLE_FONT_SIZE, **look)
