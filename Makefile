@@ -25,7 +25,7 @@ wheel-test: .venv/development
 docs: .venv/development
 	$(BIN)/mkdocs build --strict
 
-# Half an hour: every study again, with its tables and figures.
+# Three quarters of an hour: every study again, with its tables and figures.
 studies: .venv/runtime
 	for study in experiments/*/run.py; do $(BIN)/python $$study || exit 1; done
 
