@@ -78,7 +78,7 @@ BAD = {
     "pickle": (["--experimental-rerun=x.pickle"], ["--experimental-rerun"]),
     "two ways to give lenses": (["lenses=main_and_tele", "lenses.count=3"], ["lenses.each", "lenses.count"]),
     "two ways to give apertures": (["lenses.lens.aperture_radius=[1,2]"], ["aperture_radius or f_number", "both"]),
-    "plot of nothing": (["plot"], ["plot", "run folder"]),
+    "plot of nothing": (["plot"], ["plot", "folder of a run or of a sweep"]),
     "plot of what is no run": (["plot", "nowhere"], ["nowhere", "design.json"]),
     "unknown key to print": (["--cfg", "job", "lenses.cout=3"], ["lenses.cout", "did you mean lenses.count?"]),
 }
