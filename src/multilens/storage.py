@@ -45,15 +45,15 @@ class Origin:
     known: int = 0
 
 
-def write_whole(path: Path, text: str) -> None:
-    """Write a text file so that it is there complete or not at all, whatever interrupts: beside it, flushed, then renamed.
+def write_whole(path: Path, content: str | bytes) -> None:
+    """Write a file, text in UTF-8, complete or not at all, whatever interrupts: beside its place, flushed, then renamed.
 
     Raises:
         OSError: the folder cannot be written or is full; nothing is left behind then, and what was there before stays.
     """
     beside = _beside(path)
     try:
-        beside.write_text(text, encoding="utf-8", newline="\n")
+        beside.write_bytes(content.encode("utf-8") if isinstance(content, str) else content)
         _flush(beside)
         os.replace(beside, path)
     except BaseException:

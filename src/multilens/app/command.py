@@ -24,7 +24,7 @@ from multilens.app.help import FLAGS, help_text
 from multilens.app.presets import config_folder, preset_groups
 from multilens.app.refusal import RefusedError, meant
 
-COMMANDS = ("design", "evaluate", "explore", "export", "least", "plot", "report", "validate-config")
+COMMANDS = ("animate", "design", "evaluate", "explore", "export", "least", "plot", "report", "validate-config")
 """What the first word may be; key=value or a flag in its place means design. NAME is `name_command` of the module
 `multilens.app.name`, and its `USAGE` is what `multilens NAME --help` prints."""
 

@@ -19,10 +19,10 @@ LINE = "COMP_LINE"
 FIRST = {"least": ("lenses", "size", "aperture")}
 """What must be the first word behind a command."""
 
-OF_RUNS = ("evaluate", "export", "plot", "report")
+OF_RUNS = ("animate", "evaluate", "export", "plot", "report")
 """Commands whose first word is a run folder, or may be."""
 
-WITHOUT_KEYS = ("export", "plot", "report")
+WITHOUT_KEYS = ("animate", "export", "plot", "report")
 """Commands that take no key=value."""
 
 FLAGS = ("--help", "--version", "--json", "--multirun", "--cfg", "--config-dir", "--hydra-help")

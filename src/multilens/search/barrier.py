@@ -73,6 +73,7 @@ def settle(
     share: Float[Tensor, "b v"],
     settings: BarrierSettings,
     go_on: Callable[[], bool] = lambda: True,
+    watch: Callable[[Sight], None] = lambda sight: None,
 ) -> Settled:
     """Take each of a batch of vectors to a local optimum of the score under the limits.
 
@@ -86,6 +87,7 @@ def settle(
         share: where to begin; held a little within the bounds.
         settings: how to go.
         go_on: asked before every step; False ends it where it is.
+        watch: told what is seen at the beginning and after every step.
 
     Reference:
         J. Nocedal and S. Wright, Numerical optimization (2006), chapters 18 and 19: damped BFGS and interior points.
@@ -99,12 +101,14 @@ def settle(
     identity = torch.eye(seer.size, dtype=share.dtype, device=share.device).expand(len(share), -1, -1)
     state = _State(sight, slack, first / slack, identity, share.new_full((len(share),), settings.reach))
     history = [sight.value]
+    watch(sight)
     for step in range(settings.steps):
         if not go_on():
             break
         pressure = first * (last / first) ** (step / max(1, settings.steps - 1))
         state = _stepped(seer, state, pressure, settings.reach)
         history.append(state.sight.value)
+        watch(state.sight)
     sight = state.sight
     return Settled(sight.share, sight.value, -sight.room.amin(-1), torch.stack(history, dim=-1))
 
