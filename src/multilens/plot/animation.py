@@ -31,6 +31,9 @@ SIZE, DOTS_PER_INCH = (8.4, 4.6), 100
 EACH, FIRST, LAST = 100, 900, 3500
 """ms that a step, the first and the last picture are seen."""
 
+DECADE = 8.0
+"""Errors whose largest is so many times the least stand on a logarithmic scale."""
+
 COLOURS = 256
 """That all pictures share."""
 
@@ -77,11 +80,14 @@ class _Picture:
         axes.add_collection(self.curves)
         (self.best,) = axes.plot([], [], color=BEST, linewidth=2.4, zorder=3)
         self.line = axes.axhline(self.reached, color=INK, linewidth=1.0, linestyle=(0, (5, 3)), zorder=2)
-        ends = self.heights[np.isfinite(self.heights)]
-        if self.metric is not None:
+        healthy = self.heights[np.isfinite(self.heights)]
+        low, high = min(healthy.min(), self.reached), np.quantile(healthy, 0.98)
+        if low > 0 and high > DECADE * low:
             axes.set_yscale("log")
             tick_in_plain_numbers(axes.yaxis)
-        axes.set_ylim(min(ends.min(), self.reached) / 1.15, np.quantile(ends, 0.98) * 1.3)
+            axes.set_ylim(low / 1.15, high * 1.15)
+        else:
+            axes.set_ylim(low - 0.15 * (high - low), high + 0.05 * (high - low))
         axes.set_xlim(0, max(self.last, 1))
         axes.set_xlabel("step")
         axes.set_ylabel("score" if self.metric is None else f"{self.metric.name} ({self.metric.unit})")
@@ -141,7 +147,7 @@ def animated_search(
             told(step, count)
             pictures.append(picture.at(step))
     # One palette for all: colours of their own would make the pictures flicker.
-    palette = _beside(pictures[0], pictures[-1]).quantize(COLOURS, Image.Quantize.MAXCOVERAGE)
+    palette = _palette(pictures[0], pictures[-1])
     first, *others = (each.quantize(palette=palette, dither=Image.Dither.NONE) for each in pictures)
     file = BytesIO()
     durations = [FIRST, *[EACH] * (len(others) - 1), LAST]
@@ -149,11 +155,16 @@ def animated_search(
     return file.getvalue()
 
 
-def _beside(left: Image.Image, right: Image.Image) -> Image.Image:
-    both = Image.new("RGB", (left.width + right.width, left.height))
-    both.paste(left, (0, 0))
-    both.paste(right, (left.width, 0))
-    return both
+def _palette(first: Image.Image, last: Image.Image) -> Image.Image:
+    """Give a palette of what two pictures show, paper as white as it is."""
+    both = Image.new("RGB", (first.width + last.width, first.height))
+    both.paste(first, (0, 0))
+    both.paste(last, (first.width, 0))
+    palette = both.quantize(COLOURS, Image.Quantize.MAXCOVERAGE)
+    colours = np.array(palette.getpalette()).reshape(-1, 3)
+    colours[colours.sum(-1).argmax()] = 255
+    palette.putpalette(colours.flatten().tolist())
+    return palette
 
 
 def _figures(scores: Tensor, metric: Any) -> np.ndarray:
