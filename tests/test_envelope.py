@@ -7,7 +7,8 @@ from hypothesis import strategies as st
 from torch import Tensor
 from torch.autograd import grad
 
-from multilens.envelope import DepthMoments, mean_least_square
+from multilens import envelope
+from multilens.envelope import DepthMoments
 
 ROUNDING = 1e-9
 """Relative to the score with no V at all that is as flat as the flattest; sums of fourth powers of the depths cancel."""
@@ -20,6 +21,15 @@ def summed(gain: Tensor, slope: Tensor, focus: Tensor, depths: Tensor, weights: 
     stereo = gain[..., None, None] * depths**2
     defocus = slope.unsqueeze(-1) * depths * (depths - focus.unsqueeze(-1)).abs()
     return (torch.cat([stereo, defocus], dim=-2).amin(-2).square() * weights).sum(-1)
+
+
+def mean_least_square(gain: Tensor, slope: Tensor, focus: Tensor, moments: DepthMoments) -> list[Tensor]:
+    """Ask with the batch, of any shape, first."""
+    k, batch = slope.shape[-1], gain.shape
+    found = envelope.mean_least_square(
+        gain.flatten(), *(each.reshape(gain.numel(), k).T for each in (slope, focus)), moments
+    )
+    return [each.view(batch) if each.ndim == 1 else each.T.reshape(*batch, k) for each in found]
 
 
 def drawn(seed: int, lenses: int = 5, batch: tuple[int, ...] = (4,)) -> tuple[Tensor, Tensor, Tensor]:

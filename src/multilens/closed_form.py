@@ -16,6 +16,9 @@ from multilens.geometry.pairs import pair_indices
 from multilens.layout import Layout
 from multilens.lens import Lens
 
+CHUNK = 2048
+"""Designs at once: what they need on the way stays in the cache of a core."""
+
 Slopes = tuple[Float[Tensor, "*batch n 2"], Float[Tensor, "*batch n"], Float[Tensor, "*batch n t"]]
 """Derivatives with respect to position, aperture radius and focus."""
 
@@ -35,6 +38,7 @@ class ClosedForm:
         self.first, self.second = pair_indices(len(lenses) if stereo else 1, device)
         if stereo:
             self.noise = stereo.noise(lenses, torch.float64).to(device)
+            self.square_noise = self.noise.square().unsqueeze(-1)
         defocus = any(isinstance(cue, LensDefocus) for cue in cues)
         tiers = [(i, t) for i, lens in enumerate(lenses) for t in range(lens.tiers)] if defocus else []
         index = torch.tensor(tiers, dtype=torch.long, device=device).reshape(-1, 2)
@@ -44,34 +48,47 @@ class ClosedForm:
         noise = [lenses[i].blur_noise / (2 * lenses[i].focal_length) for i, _ in tiers]
         self.slope_times_radius = torch.tensor(noise, dtype=torch.float64, device=device)
 
+    @torch.no_grad()
     def __call__(self, layout: Layout) -> tuple[Float[Tensor, "*batch"], Slopes]:
         """Give the score, mm^2, and its derivatives; all in float64."""
         position, radius, focus = layout.position.double(), layout.aperture_radius.double(), layout.focus.double()
-        on_radius, on_focus = (radius, focus[..., 0]) if self.plain else self._picked(radius, focus)
-        slope = self.slope_times_radius / on_radius
-        away = position[..., self.first, :] - position[..., self.second, :]
-        distance = away.norm(dim=-1).clamp_(min=NANOMETRE)
-        if len(self.first):
-            gain, best = (self.noise / distance).min(-1)
-        else:
-            gain, best = position.new_full(position.shape[:-2], inf), None
+        batch = radius.shape[:-1]
+        parts = (position.reshape(-1, *position.shape[-2:]), radius.reshape(-1, radius.shape[-1]))
+        every = (*parts, focus.reshape(-1, *focus.shape[-2:]))
+        few = [self._of_few(*some) for some in zip(*(part.split(CHUNK) for part in every), strict=True)]
+        value, *slopes = few[0] if len(few) == 1 else (torch.cat(each) for each in zip(*few, strict=True))
+        by_position, by_radius, by_focus = (each.view(*batch, *each.shape[1:]) for each in slopes)
+        return value.view(batch), (by_position, by_radius, by_focus)
+
+    def _of_few(
+        self, position: Float[Tensor, "b n 2"], radius: Float[Tensor, "b n"], focus: Float[Tensor, "b n t"]
+    ) -> tuple[Tensor, Tensor, Tensor, Tensor]:
+        """Give value and derivatives of some designs, with the batch last on the way so that every step runs along memory."""
+        position, radius = position.permute(2, 1, 0).contiguous(), radius.T.contiguous()
+        on_radius, on_focus = self._picked(radius, focus)
+        slope = self.slope_times_radius.unsqueeze(-1) / on_radius
+        gain, pair, way = self._best_pair(position)
         value, by_gain, by_slope, by_focus = mean_least_square(gain, slope, on_focus, self.moments)
         by_position = torch.zeros_like(position)
-        if best is not None:
-            chosen = best.unsqueeze(-1)
+        if pair is not None:
             # d gain / d position of the first of the pair: -gain / distance^2 times the way between them.
-            strength = by_gain * gain / distance.gather(-1, chosen).squeeze(-1).square()
-            force = strength.view(*strength.shape, 1, 1) * away.gather(
-                -2, chosen.unsqueeze(-1).expand(*away.shape[:-2], 1, 2)
-            )
-            by_position.scatter_(-2, self.first[chosen].unsqueeze(-1).expand_as(force), -force)
-            by_position.scatter_(-2, self.second[chosen].unsqueeze(-1).expand_as(force), force)
-        by_radius = -by_slope * slope / on_radius
-        if self.plain:
-            return value, (by_position, by_radius, _beside_others(by_focus, focus))
+            force = way * (by_gain * gain / _squared_length(way))
+            by_position.scatter_(1, self.first[pair].expand_as(force), -force)
+            by_position.scatter_(1, self.second[pair].expand_as(force), force)
+        by_radius = (by_slope * slope).div_(on_radius).neg_()
+        if not self.plain:
+            by_radius = torch.zeros_like(radius).index_add_(0, self.lens, by_radius)
         spread = torch.zeros_like(focus)
-        spread[..., self.lens, self.tier] = by_focus
-        return value, (by_position, torch.zeros_like(radius).index_add_(-1, self.lens, by_radius), spread)
+        spread[:, self.lens, self.tier] = by_focus.T
+        return value, by_position.permute(2, 1, 0), by_radius.T, spread
+
+    def _best_pair(self, position: Float[Tensor, "2 n b"]) -> tuple[Tensor, Tensor | None, Tensor]:
+        """Give the least gain, its pair [1, b] and the way from its second lens to its first [2, 1, b]."""
+        if not len(self.first):
+            return position.new_full(position.shape[-1:], inf), None, position
+        way = position.index_select(1, self.first).sub_(position.index_select(1, self.second))
+        gain, pair = (self.square_noise / _squared_length(way)).min(0, keepdim=True)
+        return gain[0].sqrt(), pair, way.gather(1, pair.expand(2, 1, -1))
 
     def gain_and_slope(self, layout: Layout) -> tuple[Float[Tensor, "*batch"], Float[Tensor, "*batch k"]]:
         """Give the error of the best pair over Z^2, infinite without pairs, and h of every V, its error over Z abs(Z - Zf)."""
@@ -82,8 +99,11 @@ class ClosedForm:
         distance = (position[..., self.first, :] - position[..., self.second, :]).norm(dim=-1)
         return (self.noise / distance.clamp(min=NANOMETRE)).amin(-1), slope
 
-    def _picked(self, radius: Tensor, focus: Tensor) -> tuple[Tensor, Tensor]:
-        return radius[..., self.lens], focus[..., self.lens, self.tier]
+    def _picked(self, radius: Float[Tensor, "n b"], focus: Float[Tensor, "b n t"]) -> tuple[Tensor, Tensor]:
+        """Give radius and focus of everything that measures by defocus, [k, b]."""
+        if self.plain:
+            return radius, focus[..., 0].T.contiguous()
+        return radius.index_select(0, self.lens), focus[:, self.lens, self.tier].T.contiguous()
 
 
 def differentiable(closed_form: ClosedForm, layout: Layout) -> Float[Tensor, "*batch"]:
@@ -106,8 +126,5 @@ class _Score(Function):
         return each.unsqueeze(-1) * by_position, each * by_radius, each.unsqueeze(-1) * by_focus, None
 
 
-def _beside_others(by_focus: Tensor, focus: Tensor) -> Tensor:
-    """Give the derivative with respect to the first tier beside zeros for tiers that nothing measures with."""
-    if focus.shape[-1] == 1:
-        return by_focus.unsqueeze(-1)
-    return torch.nn.functional.pad(by_focus.unsqueeze(-1), (0, focus.shape[-1] - 1))
+def _squared_length(way: Float[Tensor, "2 m b"]) -> Float[Tensor, "m b"]:
+    return way[0].square().addcmul_(way[1], way[1]).clamp_(min=NANOMETRE**2)

@@ -24,9 +24,9 @@ class DepthMoments:
     def __init__(self, depths: Float[Tensor, " z"], weights: Float[Tensor, " z"]) -> None:
         order = depths.argsort()
         self.depths = depths[order].contiguous()
-        powers = torch.stack([self.depths**power * weights[order] for power in (2, 3, 4)], dim=-1)
-        self.sums = torch.cat([powers.new_zeros(1, 3), powers.cumsum(0)])
-        """Of w Z^2, w Z^3 and w Z^4 over all depths before each, [z + 1, 3]."""
+        powers = torch.stack([self.depths**power * weights[order] for power in (2, 3, 4)])
+        self.sums = torch.cat([powers.new_zeros(3, 1), powers.cumsum(1)], dim=1)
+        """Of w Z^2, w Z^3 and w Z^4 over all depths before each, [3, z + 1]."""
 
     def to(self, device: torch.device) -> "DepthMoments":
         """Give the same on another device."""
@@ -38,16 +38,14 @@ class DepthMoments:
 
 
 def mean_least_square(
-    gain: Float[Tensor, "*batch"],
-    slope: Float[Tensor, "*batch k"],
-    focus: Float[Tensor, "*batch k"],
-    moments: DepthMoments,
-) -> tuple[Float[Tensor, "*batch"], Float[Tensor, "*batch"], Float[Tensor, "*batch k"], Float[Tensor, "*batch k"]]:
+    gain: Float[Tensor, " b"], slope: Float[Tensor, "k b"], focus: Float[Tensor, "k b"], moments: DepthMoments
+) -> tuple[Float[Tensor, " b"], Float[Tensor, " b"], Float[Tensor, "k b"], Float[Tensor, "k b"]]:
     """Give sum_z w_z min(gain Z^2, min_k slope_k Z abs(Z - focus_k))^2 and its derivatives, without autograd.
 
     A steep V beats a flatter one in an interval around its own focus, and everything flatter in the intersection of these
     intervals; where that holds for several, the steepest of them wins, and where for none, stereo. The derivatives are those
-    of the winners: at a tie those of one of them.
+    of the winners: at a tie those of one of them. The batch comes last, so that every step runs along memory, and the sums
+    are added up in the same order whatever the batch.
 
     Args:
         gain: g of the best pair, 1/mm, >= 0; infinite where there is no stereo.
@@ -58,50 +56,63 @@ def mean_least_square(
     Returns:
         The mean of the squared error, mm^2, and its derivatives with respect to gain, slope and focus.
     """
-    if not slope.shape[-1]:
-        fourth = moments.sums[-1, 2]
+    if not len(slope):
+        fourth = moments.sums[2, -1]
         return gain.square() * fourth, 2 * gain * fourth, slope, focus
-    k = slope.shape[-1]
-    low, high = _winning_intervals(gain.unsqueeze(-1), slope, focus)
-    ends = torch.searchsorted(moments.depths, torch.cat([low, torch.maximum(low, high)], dim=-1))
-    first, last = ends[..., :k].unsqueeze(-2), ends[..., k:].unsqueeze(-2)
-    # The ends of the intervals, counted in depths, cut the range into 2 k + 1 pieces, each with one winner.
-    cuts = torch.nn.functional.pad(ends.sort(dim=-1).values, (1, 0))
-    piece = cuts.unsqueeze(-1)
-    held = slope.unsqueeze(-2) * ((first <= piece) & (piece < last))
-    steepest, winner = held.max(-1)
-    winner = winner.masked_fill_(steepest == 0, k)
-    before = moments.sums[cuts]
-    after = torch.cat([before[..., 1:, :], moments.sums[-1].expand_as(before[..., :1, :])], dim=-2)
-    won = before.new_zeros(*slope.shape[:-1], k + 1, 3)
-    won.scatter_add_(-2, winner.unsqueeze(-1).expand_as(before), after - before)
-    second, third, fourth = won.unbind(-1)
-    by_stereo = fourth[..., -1]
-    second, third, fourth = second[..., :-1], third[..., :-1], fourth[..., :-1]
+    # Steepest first: then each has only those after it to beat.
+    order = slope.T.contiguous().argsort(descending=True, stable=True).T.contiguous()
+    slope, focus = slope.gather(0, order), focus.gather(0, order)
+    won = _won(*_winning_intervals(gain, slope, focus), moments)
+    second, third, fourth = won[:, :-1]
     drift = focus * second - third
     miss = (fourth + focus * (drift - third)).clamp_(min=0)
+    by_stereo = won[2, -1]
     # Without stereo its gain is infinite and it wins nowhere.
     gain = gain.masked_fill(by_stereo == 0, 0)
     by_gain, by_slope = gain * by_stereo, slope * miss
-    value = (slope * by_slope).sum(-1) + gain * by_gain
-    return value, 2 * by_gain, 2 * by_slope, 2 * slope.square() * drift
+    value = (slope * by_slope).cumsum(0)[-1] + gain * by_gain
+    own = torch.stack([by_slope, slope.square() * drift]).mul_(2)
+    by_slope, by_focus = torch.empty_like(own).scatter_(1, order.expand_as(own), own)
+    return value, 2 * by_gain, by_slope, by_focus
+
+
+def _won(low: Float[Tensor, "k b"], high: Float[Tensor, "k b"], moments: DepthMoments) -> Float[Tensor, "3 k+1 b"]:
+    """Give the sums of w Z^2, w Z^3 and w Z^4 over the depths that each V wins, and the line last: the first of several wins."""
+    k, batch = low.shape
+    ends = torch.searchsorted(moments.depths, torch.cat([low, torch.maximum(low, high)]), out_int32=True)
+    # The ends of the intervals, counted in depths, cut the range into 2 k + 1 pieces, each with one winner.
+    cuts = torch.nn.functional.pad(ends.T.contiguous().sort(dim=-1).values.T, (0, 0, 1, 0))
+    first, last = ends.view(2, k, 1, batch).unbind()
+    rank = torch.arange(k, 0, -1, dtype=torch.int16, device=low.device).view(k, 1, 1)
+    # Multiplied, not masked: a mask is a branch for each number.
+    winner = k - (((first <= cuts) & (cuts < last)).to(torch.int16).mul_(rank)).amax(0).long()
+    before = moments.sums.index_select(1, cuts.flatten()).view(3, -1, batch)
+    piece = torch.cat([before[:, 1:], moments.sums[:, -1:, None].expand(3, 1, batch)], dim=1).sub_(before)
+    return piece.new_zeros(3, k + 1, batch).scatter_add_(1, winner.expand_as(piece), piece)
 
 
 def _winning_intervals(
-    g: Float[Tensor, "*batch 1"], h: Float[Tensor, "*batch k"], f: Float[Tensor, "*batch k"]
-) -> tuple[Float[Tensor, "*batch k"], Float[Tensor, "*batch k"]]:
-    """Give the interval in which each V lies below all flatter ones and below the line."""
-    k = h.shape[-1]
-    hf = h * f
-    line_low, line_high = hf / (h + g), (hf / (h - g).clamp(min=TINY)).masked_fill(h <= g, torch.inf)
-    if k == 1:
-        return line_low, line_high
-    mine, other, mine_f, other_f = h.unsqueeze(-1), h.unsqueeze(-2), hf.unsqueeze(-1), hf.unsqueeze(-2)
-    steeper = mine - other
-    # Of equally steep ones the first counts as steeper; their second crossing is at infinity.
-    tie_break = torch.full((k, k), TINY, dtype=h.dtype, device=h.device).tril()
-    no_flatter = steeper < tie_break
-    between, beyond = (mine_f + other_f) / (mine + other), (mine_f - other_f) / steeper.clamp(min=TINY)
-    low = torch.minimum(between, beyond).masked_fill_(no_flatter, -torch.inf).amax(-1)
-    high = torch.maximum(between, beyond).masked_fill_(no_flatter, torch.inf).amin(-1)
-    return torch.maximum(low, line_low), torch.minimum(high, line_high)
+    gain: Float[Tensor, " b"], slope: Float[Tensor, "k b"], focus: Float[Tensor, "k b"]
+) -> tuple[Float[Tensor, "k b"], Float[Tensor, "k b"]]:
+    """Give the interval in which each V lies below all that come after it, which are no steeper, and below the line."""
+    k, lift = len(slope), slope * focus
+    low, high = lift / (slope + gain), lift / (slope - gain).clamp_(min=TINY)
+    mine, other = (torch.tensor(each, dtype=torch.long, device=slope.device) for each in _pairs_by_offset(k))
+    mine_lift, other_lift = lift.index_select(0, mine), lift.index_select(0, other)
+    mine, other = slope.index_select(0, mine), slope.index_select(0, other)
+    between = (mine_lift + other_lift).div_(mine + other)
+    # Of equally steep ones the second crossing is at infinity.
+    beyond = mine_lift.sub_(other_lift).div_(mine.sub_(other).clamp_(min=TINY))
+    rows = range(k - 1, 0, -1)
+    for lower, upper in zip(
+        torch.minimum(between, beyond).split([*rows]), torch.maximum(between, beyond).split([*rows]), strict=True
+    ):
+        torch.maximum(low[: len(lower)], lower, out=low[: len(lower)])
+        torch.minimum(high[: len(upper)], upper, out=high[: len(upper)])
+    return low, high
+
+
+def _pairs_by_offset(k: int) -> tuple[list[int], list[int]]:
+    """Give both ends of every pair of k, by how far they are apart: then the first ends of a stretch are 0, 1, 2, ..."""
+    pairs = [(i, i + offset) for offset in range(1, k) for i in range(k - offset)]
+    return [i for i, _ in pairs], [j for _, j in pairs]
