@@ -58,6 +58,11 @@ def median_of(numbers: Sequence[float]) -> float:
     return median(numbers) if len(numbers) % 2 else sorted(numbers)[len(numbers) // 2]
 
 
+def is_settled(times: Sequence[float], count: int) -> bool:
+    """Give whether the median over `count` runs is already infinite, whatever the runs that are still to come."""
+    return times.count(inf) > count // 2
+
+
 def excess(score: float, best: float) -> float:
     """Give how far a score is above the best known, as a part of it."""
     return score / best - 1

@@ -17,7 +17,7 @@ from benchmark.cues import cues_table
 from benchmark.curves import curves
 from benchmark.growth import growth_table
 from benchmark.lanes import CORES, Lanes, Outcome, warm_lanes
-from benchmark.measures import VERY_CLOSE, Run, median_of, time_to
+from benchmark.measures import VERY_CLOSE, Run, is_settled, median_of, time_to
 from benchmark.methods import OURS, PEERS, RIVAL
 from benchmark.problems import CASES, Case
 from benchmark.report import Bound, Results, aimed_ratio, summary, table
@@ -86,8 +86,11 @@ def _runs(lanes: Lanes, case: Case, seeds: Sequence[int], limit: float, known: E
     for seed in seeds:
         note(OURS, seed, lanes.alone(OURS, case.name, seed, limit))
     longer = _time_of_the_rival(case, runs, limit, known)
+    target = _target(runs, known)
     for seed in seeds:
-        note(RIVAL, seed, lanes.alone(RIVAL, case.name, seed, longer), longer)
+        theirs = [time_to(run, target) for run in runs if run.method == RIVAL]
+        allowed = limit if is_settled(theirs, len(seeds)) else longer
+        note(RIVAL, seed, lanes.alone(RIVAL, case.name, seed, allowed), allowed)
     others = [name for name in PEERS if name != RIVAL]
     for names in (others[at : at + CORES] for at in range(0, len(others), CORES)):
         for name, outcome in zip(names, lanes.side_by_side(names, case.name, seeds[0], limit), strict=True):
@@ -97,9 +100,15 @@ def _runs(lanes: Lanes, case: Case, seeds: Sequence[int], limit: float, known: E
 
 def _time_of_the_rival(case: Case, ours: Sequence[Run], limit: float, known: Entry | None) -> float:
     """Give how long the rival may go on: until its time shows whether the search is as many times faster as it shall be."""
-    best = min([*(each.score for run in ours for each in run.found), *([known.score] if known else [])], default=inf)
-    needed = median_of([time_to(run, best * (1 + VERY_CLOSE)) for run in ours])
+    target = _target(ours, known)
+    needed = median_of([time_to(run, target) for run in ours])
     return max(limit, (1 + MARGIN) * aimed_ratio(case) * needed) if needed < inf else limit
+
+
+def _target(runs: Sequence[Run], known: Entry | None) -> float:
+    """Give the score within 0.1 % of the best that is known by now, mm^2."""
+    scores = [each.score for run in runs for each in run.found] + ([known.score] if known else [])
+    return min(scores, default=inf) * (1 + VERY_CLOSE)
 
 
 def _bound(case: str, best: float) -> Bound:

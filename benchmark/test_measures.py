@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from benchmark.curves import median_curve
-from benchmark.measures import Run, best_at, median_of, time_to, times_shorter
+from benchmark.measures import Run, best_at, is_settled, median_of, time_to, times_shorter
 from benchmark.referee import Judged
 
 
@@ -42,3 +42,10 @@ def test_the_median_curve_begins_when_most_runs_have_something() -> None:
     times, scores = median_curve([run((1.0, 5.0)), run((2.0, 3.0)), run((3.0, 4.0))], 10.0)
     np.testing.assert_array_equal(times[:-1], [2.0, 3.0])
     np.testing.assert_array_equal(scores[:-1], [5.0, 4.0])
+
+
+@pytest.mark.parametrize(
+    ("times", "settled"), [([], False), ([inf, 1.0], False), ([inf, inf], True), ([1.0, 2.0], False)]
+)
+def test_the_median_of_three_is_settled_once_two_never_got_there(times: list[float], settled: bool) -> None:
+    assert is_settled(times, 3) == settled
