@@ -195,3 +195,16 @@ def test_no_v_counts_for_less_than_nothing() -> None:
     depth = torch.tensor([1234.567], dtype=torch.float64)
     moments = DepthMoments(depth, torch.ones(1, dtype=torch.float64))
     assert 0 <= mean_least_square(INFINITE, depth.new_tensor([0.3]), depth, moments)[0].item() < 1e-2
+
+
+@given(st.integers(0, 2**31), st.sampled_from([1, 2, 40, 20_000]))
+def test_depths_are_counted_as_a_binary_search_counts_them(seed: int, count: int) -> None:
+    moments = DepthMoments(*depths_of(seed, count))
+    at = torch.cat([moments.depths, moments.depths.nextafter(INFINITE), moments.depths.nextafter(-INFINITE)])
+    asked = torch.cat([at, at.new_tensor([-torch.inf, 0.0, 1e300, torch.inf])])
+    assert moments.count_below(asked).equal(torch.searchsorted(moments.depths, asked))
+
+
+def test_depths_of_a_range_are_looked_up_by_their_cells() -> None:
+    depths = 200 * 25 ** torch.linspace(0, 1, 256, dtype=torch.float64)
+    assert DepthMoments(depths, torch.ones_like(depths)).one_a_cell

@@ -6,11 +6,16 @@ wins, and its share of the score is a sum over depths of w Z^2, w Z^3 and w Z^4,
 not depend on how many depths there are, and all pairs count as one.
 """
 
+from math import inf
+
 import torch
-from jaxtyping import Float
+from jaxtyping import Float, Int
 from torch import Tensor
 
 TINY = 1e-300
+
+CELLS = 4096
+"""Equal parts of the range of depths by which a depth is looked up."""
 
 
 class DepthMoments:
@@ -27,13 +32,33 @@ class DepthMoments:
         powers = torch.stack([self.depths**power * weights[order] for power in (2, 3, 4)])
         self.sums = torch.cat([powers.new_zeros(3, 1), powers.cumsum(1)], dim=1)
         """Of w Z^2, w Z^3 and w Z^4 over all depths before each, [3, z + 1]."""
+        near, span = self.depths[0], self.depths[-1] - self.depths[0]
+        self.near, self.cells_per_depth = near, (CELLS - 1) / span
+        self.one_a_cell = bool(span > 0 and self._cell(self.depths).bincount().max() <= 1)
+        if self.one_a_cell:
+            every = torch.arange(CELLS, device=self.depths.device)
+            self.before_cell = torch.searchsorted(self._cell(self.depths), every)
+            self.next_depth = torch.cat([self.depths, near.new_full((1,), inf)])[self.before_cell]
+
+    def count_below(self, depth: Float[Tensor, "*batch"]) -> Int[Tensor, "*batch"]:
+        """Give how many depths are less than each; by its cell, where none has two, for a binary search is a branch a step."""
+        if not self.one_a_cell:
+            return torch.searchsorted(self.depths, depth)
+        cell = self._cell(depth).flatten()
+        beyond = self.next_depth.index_select(0, cell).view_as(depth) < depth
+        return self.before_cell.index_select(0, cell).view_as(depth).add_(beyond)
+
+    def _cell(self, depth: Tensor) -> Tensor:
+        # Each step is monotonic however it rounds, so that of depths in other cells the order is known.
+        return (depth - self.near).mul_(self.cells_per_depth).clamp_(0, CELLS - 1).long()
 
     def to(self, device: torch.device) -> "DepthMoments":
         """Give the same on another device."""
         if device == self.depths.device:
             return self
         moved = object.__new__(DepthMoments)
-        moved.depths, moved.sums = self.depths.to(device), self.sums.to(device)
+        for name, value in vars(self).items():
+            setattr(moved, name, value.to(device) if isinstance(value, Tensor) else value)
         return moved
 
 
@@ -79,7 +104,7 @@ def mean_least_square(
 def _won(low: Float[Tensor, "k b"], high: Float[Tensor, "k b"], moments: DepthMoments) -> Float[Tensor, "3 k+1 b"]:
     """Give the sums of w Z^2, w Z^3 and w Z^4 over the depths that each V wins, and the line last: the first of several wins."""
     k, batch = low.shape
-    ends = torch.searchsorted(moments.depths, torch.cat([low, torch.maximum(low, high)]), out_int32=True)
+    ends = moments.count_below(torch.cat([low, torch.maximum(low, high)]))
     # The ends of the intervals, counted in depths, cut the range into 2 k + 1 pieces, each with one winner.
     cuts = torch.nn.functional.pad(ends.T.contiguous().sort(dim=-1).values.T, (0, 0, 1, 0))
     first, last = ends.view(2, k, 1, batch).unbind()
