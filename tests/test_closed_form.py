@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from torch import Tensor
 from torch.autograd import grad, gradcheck
 
-from multilens.closed_form import ClosedForm, differentiable
+from multilens.closed_form import CHUNK, ClosedForm, differentiable
 from multilens.cues import LensDefocus, PairStereo
 from multilens.envelope import DepthMoments
 from multilens.layout import Layout
@@ -115,3 +115,12 @@ def test_a_batch_of_batches_is_as_each_by_itself() -> None:
         torch.testing.assert_close(value[row], alone, rtol=1e-14, atol=0)
         for slope, other in zip(slopes, alone_slopes, strict=True):
             torch.testing.assert_close(slope[row], other, rtol=1e-14, atol=0)
+
+
+def test_a_batch_too_large_for_one_go_is_as_each_half_by_itself() -> None:
+    form, parts = ClosedForm([WIDE, TIERED], BOTH, MOMENTS), drawn(3, [WIDE, TIERED], (CHUNK + 4,))
+    value, slopes = form(Layout(*parts))
+    for half in (slice(0, CHUNK // 2), slice(CHUNK // 2, None)):
+        alone, alone_slopes = form(Layout(*(part[half] for part in parts)))
+        assert value[half].equal(alone)
+        assert all(slope[half].equal(other) for slope, other in zip(slopes, alone_slopes, strict=True))

@@ -55,8 +55,11 @@ class ClosedForm:
         batch = radius.shape[:-1]
         parts = (position.reshape(-1, *position.shape[-2:]), radius.reshape(-1, radius.shape[-1]))
         every = (*parts, focus.reshape(-1, *focus.shape[-2:]))
-        few = [self._of_few(*some) for some in zip(*(part.split(CHUNK) for part in every), strict=True)]
-        value, *slopes = few[0] if len(few) == 1 else (torch.cat(each) for each in zip(*few, strict=True))
+        if len(every[0]) <= CHUNK:
+            value, *slopes = self._of_few(*every)
+        else:
+            few = [self._of_few(*some) for some in zip(*(part.split(CHUNK) for part in every), strict=True)]
+            value, *slopes = (torch.cat(each) for each in zip(*few, strict=True))
         by_position, by_radius, by_focus = (each.view(*batch, *each.shape[1:]) for each in slopes)
         return value.view(batch), (by_position, by_radius, by_focus)
 
@@ -76,6 +79,8 @@ class ClosedForm:
             by_position.scatter_(1, self.first[pair].expand_as(force), -force)
             by_position.scatter_(1, self.second[pair].expand_as(force), force)
         by_radius = (by_slope * slope).div_(on_radius).neg_()
+        if self.plain and focus.shape[-1] == 1:
+            return value, by_position.permute(2, 1, 0), by_radius.T, by_focus.T.unsqueeze(-1)
         if not self.plain:
             by_radius = torch.zeros_like(radius).index_add_(0, self.lens, by_radius)
         spread = torch.zeros_like(focus)

@@ -6,6 +6,7 @@ wins, and its share of the score is a sum over depths of w Z^2, w Z^3 and w Z^4,
 not depend on how many depths there are, and all pairs count as one.
 """
 
+from functools import lru_cache
 from math import inf
 
 import torch
@@ -111,7 +112,7 @@ def _won(low: Float[Tensor, "k b"], high: Float[Tensor, "k b"], moments: DepthMo
     rank = torch.arange(k, 0, -1, dtype=torch.int16, device=low.device).view(k, 1, 1)
     # Multiplied, not masked: a mask is a branch for each number.
     winner = k - (((first <= cuts) & (cuts < last)).to(torch.int16).mul_(rank)).amax(0).long()
-    before = moments.sums.index_select(1, cuts.flatten()).view(3, -1, batch)
+    before = moments.sums.gather(1, cuts.reshape(1, -1).expand(3, -1)).view(3, -1, batch)
     piece = torch.cat([before[:, 1:], moments.sums[:, -1:, None].expand(3, 1, batch)], dim=1).sub_(before)
     return piece.new_zeros(3, k + 1, batch).scatter_add_(1, winner.expand_as(piece), piece)
 
@@ -122,22 +123,25 @@ def _winning_intervals(
     """Give the interval in which each V lies below all that come after it, which are no steeper, and below the line."""
     k, lift = len(slope), slope * focus
     low, high = lift / (slope + gain), lift / (slope - gain).clamp_(min=TINY)
-    mine, other = (torch.tensor(each, dtype=torch.long, device=slope.device) for each in _pairs_by_offset(k))
+    if k == 1:
+        return low, high
+    mine, other = _pairs_by_offset(k, slope.device)
     mine_lift, other_lift = lift.index_select(0, mine), lift.index_select(0, other)
     mine, other = slope.index_select(0, mine), slope.index_select(0, other)
     between = (mine_lift + other_lift).div_(mine + other)
     # Of equally steep ones the second crossing is at infinity.
     beyond = mine_lift.sub_(other_lift).div_(mine.sub_(other).clamp_(min=TINY))
-    rows = range(k - 1, 0, -1)
-    for lower, upper in zip(
-        torch.minimum(between, beyond).split([*rows]), torch.maximum(between, beyond).split([*rows]), strict=True
-    ):
-        torch.maximum(low[: len(lower)], lower, out=low[: len(lower)])
-        torch.minimum(high[: len(upper)], upper, out=high[: len(upper)])
-    return low, high
+    # The greatest low end and the least high end, with its sign turned, in one go.
+    ends = torch.stack([low, high.neg_()])
+    crossings = torch.stack([torch.minimum(between, beyond), torch.maximum(between, beyond).neg_()])
+    for stretch in crossings.split([*range(k - 1, 0, -1)], dim=1):
+        some = ends.narrow(1, 0, stretch.shape[1])
+        torch.maximum(some, stretch, out=some)
+    return ends[0], ends[1].neg()
 
 
-def _pairs_by_offset(k: int) -> tuple[list[int], list[int]]:
+@lru_cache(64)
+def _pairs_by_offset(k: int, device: torch.device) -> tuple[Int[Tensor, " p"], Int[Tensor, " p"]]:
     """Give both ends of every pair of k, by how far they are apart: then the first ends of a stretch are 0, 1, 2, ..."""
     pairs = [(i, i + offset) for offset in range(1, k) for i in range(k - offset)]
-    return [i for i, _ in pairs], [j for _, j in pairs]
+    return torch.tensor([i for i, _ in pairs], device=device), torch.tensor([j for _, j in pairs], device=device)
