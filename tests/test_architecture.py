@@ -20,8 +20,11 @@ MODULES = sorted(SOURCE.rglob("*.py"))
 LONGEST = 350
 """Lines of a module; about 130 is usual."""
 
-IMPORTED_AS = {"hydra-core": {"hydra", "omegaconf", "yaml"}}
+IMPORTED_AS = {"hydra-core": {"hydra", "omegaconf", "yaml"}, "pillow": {"PIL"}}
 """Names under which a distribution is imported where they are not its own; Hydra brings OmegaConf and PyYAML."""
+
+EXTRA_OF = {"cad": "cad", "sweeps/study.py": "optuna"}
+"""The extra that brings what modules of a folder, or one module, import besides: its refusal says which one."""
 
 each_module = pytest.mark.parametrize("module", MODULES, ids=lambda path: str(path.relative_to(SOURCE)))
 
@@ -41,9 +44,10 @@ def imported(module: Path) -> set[str]:
 
 
 def optional(module: Path) -> set[str]:
-    """Give what a module may import because an extra brings it: its refusal says which one."""
     extras = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["optional-dependencies"]
-    return {line.split(">")[0] for line in extras.get(module.parent.name, [])}
+    place = module.relative_to(SOURCE)
+    extra = EXTRA_OF.get(place.parts[0], EXTRA_OF.get(place.as_posix(), ""))
+    return {line.split(">")[0] for line in extras.get(extra, [])}
 
 
 def declared() -> set[str]:

@@ -144,4 +144,5 @@ def _winning_intervals(
 def _pairs_by_offset(k: int, device: torch.device) -> tuple[Int[Tensor, " p"], Int[Tensor, " p"]]:
     """Give both ends of every pair of k, by how far they are apart: then the first ends of a stretch are 0, 1, 2, ..."""
     pairs = [(i, i + offset) for offset in range(1, k) for i in range(k - offset)]
-    return torch.tensor([i for i, _ in pairs], device=device), torch.tensor([j for _, j in pairs], device=device)
+    first, second = torch.tensor(pairs, dtype=torch.int64, device=device).reshape(-1, 2).unbind(-1)
+    return first, second

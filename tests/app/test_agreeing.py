@@ -10,7 +10,15 @@ import pytest
 from multilens.app.agreeing import let_neighbours_agree
 from multilens.app.command import run_command
 
-WEAK = ["experiment=phone_back", "depth.count=32", "search.starts=1", "search.patience=0", "search.proof=1"]
+# The score has no closed form: single starts of it are found badly.
+WEAK = [
+    "experiment=phone_back",
+    "metric=worst_case",
+    "depth.count=32",
+    "search.starts=1",
+    "search.patience=0",
+    "search.proof=1",
+]
 SWEPT = ["lenses.count=1,2,3,4", "back.outline.width=72,77"]
 
 

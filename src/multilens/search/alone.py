@@ -29,7 +29,7 @@ class Alone:
     Args:
         question: what is asked.
         variables: in float64, on the processor.
-        gapless: whether depths count as a range without gaps, where the score has a closed form.
+        gapless: whether several depths count as a range without gaps, where the score has a closed form.
     """
 
     def __init__(self, question: Question, variables: Variables, gapless: bool = False) -> None:
@@ -50,7 +50,8 @@ class Alone:
             self.depths = question.depths.numpy()
             self.weights = question.score_weights.numpy()
             self.second, self.every = self.weights * self.depths**2, np.arange(len(self.depths))
-            self.least = Gapless(self.depths, self.weights) if gapless else self._over_depths
+            several = (self.depths != self.depths[0]).any()
+            self.least = Gapless(self.depths, self.weights) if gapless and several else self._over_depths
 
     def room(self, x: Float[np.ndarray, " d"]) -> ValueAndGradient:
         """Give the room left at the pairs and edges that are near, mm, and its gradient."""

@@ -112,7 +112,8 @@ def _with(problem: Question, index: int, at: int, place: Float[Tensor, " 2"], la
 
 def _free_places(problem: Question, lens: Lens, others: Sequence[Lens], layout: Layout) -> list[Tensor]:
     """Give places where the smallest body of a lens fits beside the others, as they are or else at their smallest apertures."""
-    tried, _ = tried_places(problem.back, seed=0)
+    # A copy of its own: what is tried is remembered for whoever comes next.
+    tried = tried_places(problem.back, seed=0)[0].clone()
     for axis, locked in enumerate(lens.position or (None, None)):
         if locked is not None:
             tried[:, axis] = locked
