@@ -95,9 +95,11 @@ def check_command_line(arguments: Namespace) -> Checked:
             _refuse_used("hydra.run.dir", _folder_of("hydra.run.dir", first))
         configs: dict[str, Config] = {}
         whole: dict[str, dict[str, Any]] = {}
+        # Hydra copies all that it knows to answer this: it is asked once for each key.
+        files = {key for key in (override.get_key_element() for override in swept) if loader.get_group_options(key)}
         for changed, lines in _each_value(overrides, swept, loader):
             # A value of ours cannot change what of Hydra's has been looked at; a file can.
-            chooses_file = bool(loader.get_group_options(changed.partition("=")[0]))
+            chooses_file = changed.partition("=")[0] in files
             config = composed(config_name, lines) if chooses_file or not changed else compose(config_name, lines)
             configs[changed] = build.typed(config)
             build.check(configs[changed])
