@@ -124,3 +124,19 @@ def test_a_batch_too_large_for_one_go_is_as_each_half_by_itself() -> None:
         alone, alone_slopes = form(Layout(*(part[half] for part in parts)))
         assert value[half].equal(alone)
         assert all(slope[half].equal(other) for slope, other in zip(slopes, alone_slopes, strict=True))
+
+
+@pytest.mark.parametrize("part", [0, 1, 2], ids=["position", "aperture radius", "focus"])
+def test_what_is_no_number_scores_none_and_spoils_no_other_of_the_batch(part: int) -> None:
+    parts = [each.detach() for each in drawn(3, [WIDE, LONG, WIDE])]
+    whole, _ = ClosedForm([WIDE, LONG, WIDE], BOTH, MOMENTS)(Layout(*parts))
+    parts[part][1, 0] = torch.nan
+    value, _ = ClosedForm([WIDE, LONG, WIDE], BOTH, MOMENTS)(Layout(*parts))
+    assert not value[1].isfinite()
+    assert value[[0, 2]].equal(whole[[0, 2]])
+
+
+def test_an_aperture_of_no_width_measures_nothing_by_defocus() -> None:
+    position, radius, focus = (each.detach() for each in drawn(3, [WIDE, LONG]))
+    value, _ = ClosedForm([WIDE, LONG], (LensDefocus(),), MOMENTS)(Layout(position, torch.zeros_like(radius), focus))
+    assert not value.isfinite().any()

@@ -51,7 +51,8 @@ class DepthMoments:
 
     def _cell(self, depth: Tensor) -> Tensor:
         # Each step is monotonic however it rounds, so that of depths in other cells the order is known.
-        return (depth - self.near).mul_(self.cells_per_depth).clamp_(0, CELLS - 1).long()
+        # What is no number has a cell too, and stays none in the sums.
+        return (depth - self.near).mul_(self.cells_per_depth).nan_to_num_(nan=0.0).clamp_(0, CELLS - 1).long()
 
     def to(self, device: torch.device) -> "DepthMoments":
         """Give the same on another device."""
