@@ -60,6 +60,10 @@ BAD = {
     "class to call": (["_target_=numpy.load"], ["_target_", "unknown key"]),
     "class to call with a plus": (["+back._target_=numpy.load"], ["back._target_", "unknown key"]),
     "class to call in a value": (["+back={_target_:numpy.load}"], ["_target_", "unknown key"]),
+    "Hydra's own part in a sweep": (["-m", "hydra.job.chdir=false,true"], ["hydra.job.chdir", "cannot be swept"]),
+    "all of Hydra's part in a sweep": (["-m", "++hydra={verbose:false},{verbose:true}"], ["hydra", "cannot be swept"]),
+    "a launcher in a sweep": (["-m", "hydra/launcher=basic,joblib"], ["hydra/launcher", "cannot be swept"]),
+    "variables of the environment": (["++hydra.job.env_set.PATH=x"], ["hydra.job.env_set must be empty"]),
     "class for Hydra to call": (["hydra.launcher._target_=os.system"], ["hydra.launcher._target_"]),
     "log file in the run folder": (["hydra/job_logging=default"], ["hydra.job_logging", "logging.FileHandler"]),
     "Hydra's files in the run folder": (["hydra.output_subdir=x"], ["hydra.output_subdir", "got x"]),
@@ -124,6 +128,43 @@ def test_a_callable_in_a_users_file_is_refused(elsewhere: Path, capsys: pytest.C
     (elsewhere / "mine" / "experiment" / "foreign.yaml").write_text(text)
     assert run_command(["--config-dir=mine", "experiment=foreign"]) == 2
     assert "hydra.callbacks.x._target_" in capsys.readouterr().err
+
+
+HANDLER = "{version: 1, handlers: {x: {class: this.x}}, root: {handlers: [x]}}"
+
+
+@pytest.mark.parametrize(
+    ("param", "told"),
+    [
+        (f'"++hydra": "{{verbose: false}},{{job_logging: {HANDLER}}}"', "hydra cannot be swept"),
+        ('hydra.job.chdir: "false,true"', "hydra.job.chdir cannot be swept"),
+        ('"+mine": "first,second"', "hydra.callbacks.x._target_"),
+    ],
+)
+def test_what_a_sweep_in_a_users_file_would_set_of_hydras_is_refused(
+    param: str, told: str, elsewhere: Path, capsys: pytest.CaptureFixture[str]
+):
+    for folder in ("experiment", "mine"):
+        (elsewhere / "mine" / folder).mkdir(parents=True)
+    text = f"# @package _global_\nhydra: {{mode: MULTIRUN, sweeper: {{params: {{{param}}}}}}}\n"
+    (elsewhere / "mine/experiment/swept.yaml").write_text(text)
+    (elsewhere / "mine/mine/first.yaml").write_text("# @package _global_\nname: first\n")
+    (elsewhere / "mine/mine/second.yaml").write_text(
+        "# @package _global_\nhydra: {callbacks: {x: {_target_: os.getcwd}}}\n"
+    )
+    assert run_command(["--config-dir=mine", "experiment=swept"]) == 2
+    err = capsys.readouterr().err
+    assert told in err
+    assert err.count("\n") == 1
+    assert [path.name for path in elsewhere.iterdir()] == ["mine"]
+
+
+def test_variables_of_the_environment_in_a_users_file_are_refused(elsewhere: Path, capsys: pytest.CaptureFixture[str]):
+    (elsewhere / "mine/experiment").mkdir(parents=True)
+    text = "# @package _global_\nhydra: {job: {env_set: {PATH: here}}}\n"
+    (elsewhere / "mine/experiment/foreign.yaml").write_text(text)
+    assert run_command(["--config-dir=mine", "experiment=foreign"]) == 2
+    assert "hydra.job.env_set must be empty" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("stream", ["ext://this.s", "cfg://handlers", "${oc.env:STREAM}"])

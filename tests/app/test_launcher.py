@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from multilens.app.command import run_command
-from multilens.app.launcher import failures_told
+from multilens.app.launcher import failures_told, refuse_foreign_commands
 
 pytest.importorskip("submitit", reason="the extra for clusters is not installed")
 
@@ -31,6 +31,11 @@ def test_a_command_in_a_users_file_is_refused(
     assert told in err
     assert err.count("\n") == 1
     assert {path.name for path in tmp_path.iterdir()} == {"mine"}
+
+
+@pytest.mark.parametrize("plus", ["", "+", "++"])
+def test_a_command_on_the_command_line_is_not_refused(plus: str):
+    refuse_foreign_commands({"setup": ["module load python"]}, [f"{plus}hydra.launcher.setup=[module load python]"])
 
 
 def test_a_machine_without_slurm_is_told(

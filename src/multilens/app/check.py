@@ -93,10 +93,11 @@ def check_command_line(arguments: Namespace) -> Checked:
                     f"{_line(override)}: several values need multilens -m, or [...] around them where a list is meant"
                 )
             _refuse_used("hydra.run.dir", _folder_of("hydra.run.dir", first))
+        _refuse_swept_hydra(swept)
         configs: dict[str, Config] = {}
         whole: dict[str, dict[str, Any]] = {}
         # Hydra copies all that it knows to answer this: it is asked once for each key.
-        files = {key for key in (override.get_key_element() for override in swept) if loader.get_group_options(key)}
+        files = {each.get_key_element() for each in swept if loader.get_group_options(each.key_or_group)}
         for changed, lines in _each_value(overrides, swept, loader):
             # A value of ours cannot change what of Hydra's has been looked at; a file can.
             chooses_file = changed.partition("=")[0] in files
@@ -133,7 +134,7 @@ def parsed(lines: list[str], loader: ConfigLoader) -> list[Override]:
             raise RefusedError(
                 f"{_line(override)}: what Hydra logs is not set key by key, the run folder has a log of its own"
             )
-        if key.split(".")[0].split("/")[0] == "hydra":
+        if _is_hydras(key):
             continue
         options = loader.get_group_options(key) if "." not in key else []
         if options and not isinstance(override.value(), dict):
@@ -143,6 +144,10 @@ def parsed(lines: list[str], loader: ConfigLoader) -> list[Override]:
         elif not is_known(key.split(".")):
             raise RefusedError(unknown_key(key, _line(override)))
     return overrides
+
+
+def _is_hydras(key: str) -> bool:
+    return key.replace("/", ".").split(".")[0] == "hydra"
 
 
 def _line(override: Override) -> str:
@@ -182,6 +187,15 @@ def _swept_in_files(config: DictConfig, loader: ConfigLoader) -> list[Override]:
     return parsed([f"{key}={value}" for key, value in params.items()], loader)
 
 
+def _refuse_swept_hydra(swept: list[Override]) -> None:
+    """Refuse to sweep what of Hydra's is looked at once; it reads most of it once as well, before the first job."""
+    for override in swept:
+        if _is_hydras(override.key_or_group):
+            raise RefusedError(
+                one_line(f"{override.key_or_group} cannot be swept, it is Hydra's own, got {_line(override)}")
+            )
+
+
 def _each_value(
     overrides: list[Override], swept: list[Override], loader: ConfigLoader
 ) -> Iterator[tuple[str, list[str]]]:
@@ -208,6 +222,10 @@ def composed(config_name: str, lines: list[str]) -> DictConfig:
         raise RefusedError("hydra.job.chdir must be null or false, the run folder is put in place at the end, got true")
     own = OmegaConf.to_container(config.hydra, resolve=False)
     assert isinstance(own, dict)
+    if variables := own["job"]["env_set"]:
+        raise RefusedError(
+            one_line(f"hydra.job.env_set must be empty, variables are set in front of the command, got {variables}")
+        )
     if (subdir := own["sweep"]["subdir"]) != JOB_FOLDER:
         raise RefusedError(one_line(f"hydra.sweep.subdir must be {JOB_FOLDER}, a job's number, got {subdir}"))
     _refuse_foreign_callables("hydra", own)

@@ -21,7 +21,7 @@ def refuse_foreign_commands(launcher: Mapping[str, Any], lines: Sequence[str]) -
     Raises:
         RefusedError: commands stand in a file, or a value has several lines, each of which a shell would read.
     """
-    if launcher.get(SETUP) and not any(line.startswith(f"hydra.launcher.{SETUP}=") for line in lines):
+    if launcher.get(SETUP) and not any(line.lstrip("+").startswith(f"hydra.launcher.{SETUP}=") for line in lines):
         raise RefusedError(
             f"hydra.launcher.{SETUP} runs commands: it must be given on the command line, got it in a file"
         )
