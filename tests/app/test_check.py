@@ -20,6 +20,8 @@ BAD = {
     "unknown cue": (["cues.names=[stereo,smell]"], ["cues.names", "smell"]),
     "no ring": (["field_of_view.rings=0"], ["field_of_view.rings", "from 1 to 1024", "got 0"]),
     "no cue": (["cues.names=[]"], ["cues.names", "none"]),
+    "a sweep of nothing": (["-m", "lenses.count=range(1,1)"], ["lenses.count=range(1,1)", "one value at least"]),
+    "a range without steps": (["-m", "lenses.count=range(1,3,0)"], ["lenses.count=range(1,3,0)", "zero"]),
     "no lens": (["lenses.count=0"], ["lenses.count", "from 1 to 64", "got 0"]),
     "many lenses": (["lenses.count=65"], ["lenses.count", "got 65"]),
     "NaN": (["lenses.lens.focal_length=nan"], ["lenses.lens: focal_length", "nan"]),

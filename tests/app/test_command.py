@@ -62,3 +62,13 @@ def test_flags_may_stand_between_keys(monkeypatch: pytest.MonkeyPatch, capsys: p
     words = ["design", "experiment=demo", "--cfg", "job", "lenses.count=7", "-p", "lenses.count"]
     assert run_command(words) == 0
     assert capsys.readouterr().out.strip() == "7"
+
+
+@pytest.mark.parametrize("flag", [["--config-dir", "design"], ["--config-dir=design"], ["-cd", "design"]])
+def test_flags_may_stand_before_the_command(
+    flag: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+):
+    (tmp_path / "design").mkdir()
+    monkeypatch.chdir(tmp_path)
+    assert run_command([*flag, "validate-config", "experiment=demo"]) == 0
+    assert capsys.readouterr().out.startswith("OK: demo")

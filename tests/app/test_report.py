@@ -11,6 +11,7 @@ REFUSED = {
     "a flag": (["report", "--all"], ["one folder", "got --all"]),
     "an unknown key": (["report", "a", "output=x"], ["one folder", "output=x"]),
     "no file": (["report", "a", "out="], ["out must be one file", "got none"]),
+    "a design in place of a page": (["report", "a", "out=a/design.json"], ["ends in .html", "got a/design.json"]),
 }
 
 

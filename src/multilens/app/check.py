@@ -176,7 +176,12 @@ def _choices(override: Override, loader: ConfigLoader) -> list[str]:
     elif isinstance(value, IntervalSweep):
         names = [str(value.start), str(value.end)]
     else:
-        names = list(override.sweep_string_iterator())
+        try:
+            names = list(override.sweep_string_iterator())
+        except ValueError as error:
+            raise RefusedError(one_line(f"{_line(override)}: {error}")) from None
+        if not names:
+            raise RefusedError(f"{_line(override)}: must have one value at least, got none")
     return [f"{key}={name}" for name in names]
 
 

@@ -28,6 +28,9 @@ COMMANDS = ("animate", "design", "evaluate", "explore", "export", "least", "plot
 """What the first word may be; key=value or a flag in its place means design. NAME is `name_command` of the module
 `multilens.app.name`, and its `USAGE` is what `multilens NAME --help` prints."""
 
+VALUED_FLAGS = ("--config-dir", "-cd", "--config-path", "-cp", "--config-name", "-cn", "--package", "-p")
+"""Flags of Hydra's whose value is the next word."""
+
 
 def run_command(given: list[str]) -> int:
     """Run what the command line asks for; everything that goes wrong by input or system is told in one line on stderr.
@@ -60,7 +63,7 @@ def run_command(given: list[str]) -> int:
 
 
 def _run(given: list[str]) -> int:
-    first, rest = next(iter(given), ""), given[1:]
+    first, rest = _first_word(given)
     named, helped = first in COMMANDS, any(word in FLAGS for word in given)
     if "--version" in given:
         from importlib.metadata import version
@@ -78,6 +81,18 @@ def _run(given: list[str]) -> int:
         _refuse_unknown_command(first)
         return _command(first)(rest) if named else _command("design")(given)
     return DONE
+
+
+def _first_word(given: list[str]) -> tuple[str, list[str]]:
+    """Give the command, also where flags stand before it, and all other words; without one the first word."""
+    value = False
+    for at, word in enumerate(given):
+        if not value and word in COMMANDS:
+            return word, given[:at] + given[at + 1 :]
+        if not (value or word.startswith("-")):
+            break
+        value = word in VALUED_FLAGS
+    return next(iter(given), ""), given[1:]
 
 
 def _refuse_unknown_command(first: str) -> None:

@@ -14,7 +14,7 @@ multilens report SWEEP_FOLDER    one of a sweep: charts, layouts and table, link
 The file needs no server and no network. Its path is printed.
 
 Options
-  out=FILE.html            where it goes (report.html in the folder)
+  out=FILE.html            where it goes (report.html in the folder); a file that is there is replaced
 
 Examples
   multilens report runs/demo
@@ -43,8 +43,10 @@ def report_command(words: Sequence[str]) -> int:
         raise RefusedError(
             f"report must be given one folder, as in multilens report runs/demo, got {' '.join(folders) or 'none'}"
         )
-    if len(outs) > 1 or "" in outs:
-        raise RefusedError(f"out must be one file, as in out=phone.html, got {' '.join(outs) or 'none'}")
+    if len(outs) > 1 or not all(out.lower().endswith((".html", ".htm")) for out in outs):
+        raise RefusedError(
+            f"out must be one file that ends in .html, as in out=phone.html, got {' '.join(outs) or 'none'}"
+        )
     folder = Path(folders[0])
     if not ((folder / "design.json").is_file() or any(folder.glob("*/row.json"))):
         missing = "there is no design.json in it and no job"
