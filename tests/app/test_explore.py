@@ -104,6 +104,17 @@ def test_where_nothing_fits_at_all_the_exit_code_says_so(tmp_path: Path, capsys:
     assert len(rows(tmp_path / "none")) == 2
 
 
+def test_what_does_not_go_together_is_a_row_and_the_exploration_goes_on(tmp_path: Path):
+    """Each end is admissible by itself, a near limit beyond the far one is not."""
+    space = ["depth.near=interval(100,900)", "depth.far=choice(5000,500)"]
+    words = [*TINY, *space, "minimise=rmse", "trials=8", f"out={tmp_path / 'depths'}"]
+    assert explore(*words) == 0
+    table = rows(tmp_path / "depths")
+    apart = [float(row["settings"]["depth.near"]) < float(row["settings"]["depth.far"]) for row in table]
+    assert [row["status"] != "refused" for row in table] == apart
+    assert (len(table), set(apart)) == (8, {True, False})
+
+
 BAD = {
     "no folder": ([WIDTH], "out must be a folder"),
     "nothing to choose": (["out=x"], "explore must have something to choose"),

@@ -9,7 +9,7 @@ from pathlib import Path
 from omegaconf import DictConfig, OmegaConf
 
 from multilens.app.ending import DONE, NOTHING_FOUND, tell
-from multilens.app.given import read_given
+from multilens.app.given import Given, compose_given, read_given
 from multilens.app.loading import load_torch
 from multilens.app.plain import plain
 from multilens.app.refusal import RefusedError, meant, refused_at
@@ -135,7 +135,10 @@ def _number(name: str, text: str, least: int) -> int:
 
 def _open(options: _Options, asked: Asked) -> None:
     """Check every end of what may be chosen, and take the folder, or find that it is this exploration's already."""
-    configs = {changed: plain(_config(asked, lines)) for changed, lines in each_end(asked.space)}
+    configs = {
+        changed: plain(_config(read_given([*asked.presets, *asked.lines, *lines])))
+        for changed, lines in each_end(asked.space)
+    }
     chosen_by = {"minimise": ",".join(options.objectives), "seed": str(options.seed)}
     claim = claim_of(asked.fixed, {**asked.written, **chosen_by}, configs)
     with refused_at(f"out: {options.out}"):
@@ -148,12 +151,14 @@ def _open(options: _Options, asked: Asked) -> None:
 def _row(out: Path, asked: Asked, number: int, settings: Sequence[tuple[str, str]]) -> SweepRow:
     """Give what comes of a trial, whose lock is held."""
     lines = [f"{key}={value}" for key, value in settings]
-    compute_if_missing(_config(asked, lines), out / str(number), [*asked.lines, *lines], True)
+    # What does not go together is for the search to refuse: then the trial has a row that says so, and is done with.
+    config = _config(compose_given([*asked.presets, *asked.lines, *lines]))
+    compute_if_missing(config, out / str(number), [*asked.lines, *lines], True)
     return read_job(out / str(number)).row
 
 
-def _config(asked: Asked, lines: Sequence[str]) -> DictConfig:
-    config = OmegaConf.create(read_given([*asked.presets, *asked.lines, *lines]).text)
+def _config(given: Given) -> DictConfig:
+    config = OmegaConf.create(given.text)
     assert isinstance(config, DictConfig)
     return config
 

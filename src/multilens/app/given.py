@@ -23,7 +23,7 @@ class Given:
     """What the words stand for.
 
     Args:
-        config: composed and checked; what can be built without torch has been built.
+        config: composed.
         text: the same as YAML, every key written out.
         keys: what the words set, such as "depth" and "lenses.count".
     """
@@ -34,13 +34,27 @@ class Given:
 
 
 def read_given(words: Sequence[str]) -> Given:
-    """Compose and check a configuration.
+    """Compose a configuration and check it: what can be built without torch is built.
 
     Args:
         words: key=value, group=option, and `--config-dir FOLDER` for presets of one's own.
 
     Raises:
         RefusedError: something is unknown, out of its range, has several values or does not go together; one line.
+    """
+    given = compose_given(words)
+    build.check(given.config)
+    return given
+
+
+def compose_given(words: Sequence[str]) -> Given:
+    """Compose a configuration, whose values may be out of their ranges.
+
+    Args:
+        words: as of `read_given`.
+
+    Raises:
+        RefusedError: something is unknown or has several values; one line.
     """
     folder, lines = folder_of_presets(words)
     arguments = Namespace(config_path=None, config_dir=folder, overrides=lines)
@@ -55,7 +69,6 @@ def read_given(words: Sequence[str]) -> Given:
             whole.pop("hydra")
         config = build.typed(whole)
         text = OmegaConf.to_yaml(whole, resolve=True)
-    build.check(config)
     return Given(config, text, tuple(override.key_or_group for override in overrides))
 
 
