@@ -82,6 +82,62 @@ def test_transforms_are_followed_from_the_inside_out():
     assert back.outline.radius == pytest.approx(4)
 
 
+@pytest.mark.parametrize(
+    ("transform", "corner"),
+    [
+        ("", (1, 2)),
+        ("none", (1, 2)),
+        ("  translate( 5 )\n", (6, 2)),
+        ("translate(5-6.5)", (6, -4.5)),
+        ("translate(.5.25)", (1.5, 2.25)),
+        ("translate(+5e0,6E-1),scale(2 1)", (7, 2.6)),
+        ("matrix(1 0 0 1 5 6) skewX(0)", (6, 8)),
+        ("rotate(0, 7, 8)", (1, 2)),
+    ],
+)
+def test_a_transform_may_be_written_in_any_way_that_there_is(transform: str, corner: tuple[float, float]):
+    outline = read(f'<g transform="{transform}"><rect id="outline" x="1" y="2" width="3" height="4"/></g>').outline
+    assert outline.bounds[:2] == pytest.approx(corner)
+
+
+@pytest.mark.parametrize(
+    "transform",
+    [
+        "translate(5",
+        "translate()",
+        "translate(5 6 7)",
+        "translate(5mm)",
+        "translate(5) none",
+        "scale(2),",
+        "translate(5 x)",
+        "Scale(2)",
+        "turn(5)",
+        "scale(2) 5",
+        "matrix(1 0 0 1 5)",
+        "rotate(5 6)",
+        "scale(2);scale(3)",
+    ],
+)
+def test_what_is_no_whole_transform_is_not_passed_over(transform: str):
+    with pytest.raises(ValueError, match=r"transform must be one or more of matrix\(a b c d e f\), translate\(x y\)"):
+        read(f'<g transform="{transform}">{SQUARE}</g>')
+
+
+@pytest.mark.parametrize("rule", ["transform:translate(5px)", "fill:red; Rotate : 9deg", "transform-origin: 5px 5px"])
+def test_a_transform_in_a_style_is_refused(rule: str):
+    name = rule.rpartition(";")[2].partition(":")[0].strip().lower()
+    for shapes in (f'<g style="{rule}">{SQUARE}</g>', SQUARE.replace("/>", f' style="{rule}"/>')):
+        with pytest.raises(ValueError, match=f"must be moved by an attribute transform alone, got {name}"):
+            read(shapes)
+    with pytest.raises(ValueError, match=f"alone, got {name}"):
+        read(SQUARE, f'{PAGE} style="{rule}"')
+
+
+def test_an_origin_of_a_transform_is_refused():
+    with pytest.raises(ValueError, match="by an attribute transform alone, got transform-origin"):
+        read(f'<g transform="rotate(9)" transform-origin="5 5">{SQUARE}</g>')
+
+
 def test_a_mirrored_circle_is_a_circle_and_a_stretched_one_is_cut():
     mirrored = read('<g transform="scale(1,-1)"><circle id="outline" cx="5" cy="-9" r="4"/></g>')
     assert mirrored.outline == disc((5, 9), 4)
@@ -162,7 +218,10 @@ DEEP = "<g>" * 100 + "</g>" * 100
         (svg('<circle id="outline" r="0"/>'), "a shape must bound something, got nothing"),
         (svg('<rect id="outline" width="-4" height="5"/>'), "width must be a plain finite number, >= 0, got '-4'"),
         (svg('<rect width="4" height="5"/>'), "got none there; the file has the layers none"),
-        (svg('<g transform="rotate(x)"><rect id="outline" width="4" height="5"/></g>'), "transform must be one, got"),
+        (
+            svg('<g transform="rotate(x)"><rect id="outline" width="4" height="5"/></g>'),
+            "transform must be one or more of matrix",
+        ),
         (
             svg(f'<g transform="{"translate(" * 20_000}">{SQUARE}</g>'),
             "transform must be at most 1000 characters, got 200000",

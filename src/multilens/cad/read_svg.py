@@ -3,6 +3,7 @@
 # What svgelements has parsed has numbers and points where its types allow None.
 # pyright: reportOptionalOperand=false, reportOperatorIssue=false
 
+import re
 from collections.abc import Iterator
 from math import ceil, isclose, isfinite, sqrt, tan
 from typing import Any
@@ -40,6 +41,24 @@ CIRCULAR = 1e-9
 
 MOST_ELEMENTS, DEEPEST, LONGEST_TRANSFORM = 20_000, 64, 1000
 
+NUMBER = r"(?>[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)"
+APART = r"(?>\s*,?\s*)"
+ARGUMENTS = {"matrix": (6,), "translate": (1, 2), "scale": (1, 2), "rotate": (1, 3), "skewX": (1,), "skewY": (1,)}
+"""How many numbers each transform takes."""
+
+ONE = "|".join(
+    rf"{name}\s*\(\s*{NUMBER}(?:{APART}{NUMBER}){{{count - 1}}}\s*\)"
+    for name, counts in ARGUMENTS.items()
+    for count in counts
+)
+TRANSFORM = re.compile(rf"\s*+(?:none|(?:{ONE})(?:{APART}(?:{ONE}))*+)?\s*", re.ASCII)
+"""No step of it is undone where the next does not match, so that no text takes long."""
+
+KNOWN = "matrix(a b c d e f), translate(x y), scale(x y), rotate(degrees x y), skewX(degrees) and skewY(degrees)"
+
+FROM_STYLE = ("transform", "transform-origin", "transform-box", "translate", "rotate", "scale")
+"""Words of a style that move shapes, too."""
+
 
 # What is not finite numpy warns of; a curve refuses it.
 @np.errstate(all="ignore")
@@ -58,7 +77,7 @@ def read_svg(text: str, units: str | None, tolerance: float) -> Drawing:
     """
     root = _root(text)
     factor = scale_of(units, _millimetres(root), "width, height and viewBox", "units=mm")
-    parts = _parts(root, _matrix(root.get("transform", "")), (), factor, tolerance)
+    parts = _parts(root, _matrix(root), (), factor, tolerance)
     return Drawing(tuple(parts), y_up=False)
 
 
@@ -136,9 +155,8 @@ def _parts(element: Element, above: Matrix, layers: tuple[str, ...], factor: flo
         if "none" in (child.get("display"), _style(child).get("display")):
             continue
         inside = (*layers, *dict.fromkeys(names))
-        matrix = _matrix(child.get("transform", "")) * above
         if kind in GROUPS:
-            yield from _parts(child, matrix, inside, factor, tolerance)
+            yield from _parts(child, _matrix(child) * above, inside, factor, tolerance)
         elif kind in ELSEWHERE:
             yield Part(
                 inside, fault=f"an element {kind} cannot be read: make it a path of its own, or put it in another group"
@@ -147,6 +165,7 @@ def _parts(element: Element, above: Matrix, layers: tuple[str, ...], factor: flo
             title = next((part.text for part in child if _kind(part) == "title" and part.text), "")
             clearance = child.get(CLEARANCE)
             said = None if clearance is None else factor * _number(CLEARANCE, clearance)
+            matrix = _matrix(child) * above
             try:
                 curves = _curves(_path(child, kind, matrix), factor, tolerance)
                 yield Part(inside, curves, title or (names or [""])[0], said)
@@ -154,14 +173,17 @@ def _parts(element: Element, above: Matrix, layers: tuple[str, ...], factor: flo
                 yield Part(inside, fault=str(error))
 
 
-def _matrix(transform: str) -> Matrix:
-    # svgelements looks through what is no transform again and again.
+def _matrix(element: Element) -> Matrix:
+    """Give how an element is moved, refused where that is not told in full: passed over, it would be drawn somewhere else."""
+    style, transform = _style(element), element.get("transform", "")
+    for name in FROM_STYLE:
+        if name in style or (name.startswith("transform-") and name in element.attrib):
+            raise ValueError(f"shapes must be moved by an attribute transform alone, got {name}")
     if len(transform) > LONGEST_TRANSFORM:
         raise ValueError(f"transform must be at most {LONGEST_TRANSFORM} characters, got {len(transform)}")
-    try:
-        return Matrix(transform)
-    except (ValueError, IndexError, TypeError) as error:
-        raise ValueError(f"transform must be one, got {transform!r:.40}: {error}") from None
+    if not TRANSFORM.fullmatch(transform):
+        raise ValueError(f"transform must be one or more of {KNOWN}, got {transform!r:.40}")
+    return Matrix(transform)
 
 
 def _pairs(points: str) -> list[tuple[float, float]]:
@@ -173,7 +195,7 @@ def _pairs(points: str) -> list[tuple[float, float]]:
 
 def _style(element: Element) -> dict[str, str]:
     pairs = (rule.partition(":") for rule in element.get("style", "").split(";"))
-    return {name.strip(): value.strip() for name, _, value in pairs}
+    return {name.strip().lower(): value.strip() for name, _, value in pairs}
 
 
 def _path(element: Element, kind: str, matrix: Matrix) -> Path:
