@@ -13,6 +13,7 @@ from multilens.app.given import read_given
 from multilens.app.schema_file import sha256_of
 from multilens.back import Back
 from multilens.cad.export import export
+from multilens.cad.read import LARGEST_FILE
 from multilens.design import Design
 from multilens.geometry.shape import disc
 
@@ -52,6 +53,18 @@ def test_layers_units_clearance_and_tolerance_are_told_by_keys():
         read("back.file.path=phone.wkt", "back.file.units=mm", "back.file.keep_outs=[outline]").keep_outs[0].name
         == "outline"
     )
+
+
+def test_no_layers_of_keep_outs_are_none():
+    assert read("back.file.path=phone.svg", "back.file.keep_outs=[]") == Back(BACK.outline)
+
+
+def test_a_checksum_is_of_files_alone_that_are_small_enough_to_be_read():
+    with Path("huge.svg").open("wb") as file:
+        file.truncate(LARGEST_FILE + 1)
+    assert sha256_of("huge.svg") is None
+    assert sha256_of(".") is None
+    assert sha256_of("away.svg") is None
 
 
 def test_a_run_says_what_it_read_and_keeps_it(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]):
@@ -104,6 +117,12 @@ def test_nothing_is_told_where_no_file_is_read():
         (["back=file"], "back must have an outline, or a file of one as in back.file.path=phone.dxf, got neither"),
         (["back.file.path=phone.svg"], "back must have an outline or a file, got both: begin with back=file"),
         (["back.file.units=mm"], "back.file.units is of a file: set back.file.path, too, or none of them"),
+        (["back=file", "back.file.path=/dev/zero"], "back.file.path must be a file, there is none at /dev/zero"),
+        (["back=file", "back.file.path=huge.svg"], f"file must be at most {LARGEST_FILE} bytes, got more"),
+        (
+            ["back=file", "back.file.path=huge.svg", "back.file.sha256=0"],
+            f"file must be at most {LARGEST_FILE} bytes, got more",
+        ),
         (["back=file", "back.file.path=away.svg"], "back.file.path must be a file, there is none at away.svg"),
         (["back=file", "back.file.path=phone.step"], "back.file.path must be a file, there is none at phone.step"),
         (["back=file", "back.file.path=x.wkt"], "back.file: x.wkt: units must be known, got a file without them"),
@@ -132,6 +151,8 @@ def test_what_cannot_be_read_is_refused_in_one_line_and_leaves_nothing(
 ):
     Path("x.wkt").write_text("POLYGON ((0 0, 4 0, 4 6, 0 6, 0 0))")
     Path("bow.wkt").write_text("POLYGON ((0 0, 10 10, 10 0, 0 10, 0 0))")
+    with Path("huge.svg").open("wb") as file:
+        file.truncate(LARGEST_FILE + 1)
     Path("notes.txt").write_text("4 x 6")
     monkeypatch.setattr("sys.argv", ["multilens", *words])
     assert run_command(words) == 2

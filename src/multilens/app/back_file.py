@@ -19,7 +19,7 @@ def read_back_file(config: BackFileConfig) -> BackRead:
     if not path.is_file():
         raise RefusedError(f"back.file.path must be a file, there is none at {path}")
     found = sha256_of(config.path)
-    if config.sha256 not in (None, found):
+    if found is not None and config.sha256 not in (None, found):
         raise RefusedError(f"back.file.sha256 must be {found}, that of {path} as it is now, got {config.sha256}")
     keep_outs = None if config.keep_outs is None else tuple(config.keep_outs)
     wanted = Wanted(config.outline, keep_outs, config.clearance, config.tolerance)

@@ -67,7 +67,8 @@ class Wanted:
 
     Args:
         outline: layer of the outline; everything on it together is the outline.
-        keep_outs: layers of the keep-outs; each thing on them is one. None takes the layer `KEEP_OUTS` where there is one.
+        keep_outs: layers of the keep-outs, () for none; each thing on them is one. None takes the layer `KEEP_OUTS` where there is
+            one.
         clearance: that bodies keep from a keep-out of which the file does not say it, mm.
         tolerance: by which rims that cannot be exact may move, to the safe side, mm.
     """
@@ -145,7 +146,8 @@ def _shape(name: str, curves: Sequence[Curve], within: bool, drawing: Drawing, w
 def _named_keep_outs(drawing: Drawing, wanted: Wanted) -> dict[str, Part]:
     """Give each keep-out by a name of its own: its own name, else that of its layer, with a number where it is taken."""
     named: dict[str, Part] = {}
-    for layer in wanted.keep_outs or [name for name in drawing.layers if name.casefold() == KEEP_OUTS]:
+    usual = tuple(name for name in drawing.layers if name.casefold() == KEEP_OUTS)
+    for layer in usual if wanted.keep_outs is None else wanted.keep_outs:
         for part in _on(drawing, layer, "keep-outs"):
             if part in named.values():
                 continue

@@ -38,7 +38,7 @@ def read_back(
         path: of the file.
         units: of its numbers, "mm", "cm", "m", "um", "inch" or "ft"; None for those that the file says.
         outline: name of the layer, group or element that is the outline.
-        keep_outs: names of those that are keep-outs; None takes the layer "keep-outs" if there is one.
+        keep_outs: names of those that are keep-outs, () for none; None takes the layer "keep-outs" if there is one.
         clearance: that bodies keep from each keep-out of which the file says none, mm, >= 0.
         tolerance: by which a rim may move to the safe side where it cannot be exact, mm, > 0.
 
