@@ -12,6 +12,7 @@ from time import sleep
 import pytest
 
 from multilens.app.command import run_command
+from multilens.sweeps.locks import clear_half_written
 
 SMALL = ["back=rectangle", "cues=stereo", "lenses.count=2", "depth.count=8", "search.starts=2", "search.patience=0"]
 TINY = [*SMALL, "search.proof=0"]
@@ -58,6 +59,19 @@ def test_the_same_command_computes_nothing_again(
     monkeypatch.setattr("multilens.search.solve.solve", None)
     assert explore(*TINY, "back.outline.height=20", WIDTH, "minimise=rmse", "trials=8", f"out={island}") == 0
     assert capsys.readouterr().out.splitlines()[-1] == str(island / "best.csv")
+
+
+def test_the_best_are_not_cleared_away_by_another_process_while_they_are_written(
+    island: Path, monkeypatch: pytest.MonkeyPatch
+):
+    replace = os.replace
+
+    def clear_and_replace(written: Path, path: Path) -> None:
+        clear_half_written(island)
+        replace(written, path)
+
+    monkeypatch.setattr("os.replace", clear_and_replace)
+    assert explore(*TINY, "back.outline.height=20", WIDTH, "minimise=rmse", "trials=8", f"out={island}") == 0
 
 
 @pytest.mark.parametrize(

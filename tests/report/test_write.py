@@ -1,3 +1,5 @@
+import os
+
 import pytest
 
 from multilens.report.run_page import run_page
@@ -5,7 +7,9 @@ from multilens.report.sweep_page import sweep_page
 from multilens.report.write import estimates_in, write_report
 from multilens.runs import write_design, write_run
 from multilens.storage import ESTIMATES
+from multilens.sweeps.claim import CLAIM_FILE
 from multilens.sweeps.job import row_of, write_job
+from multilens.sweeps.locks import clear_half_written
 from multilens.sweeps.table import read_rows
 
 
@@ -64,6 +68,24 @@ def test_the_report_of_a_sweep_is_put_into_its_folder(sweep, design):
     assert write_report(sweep, listener=said.append) == sweep / "report.html"
     assert (sweep / "report.html").read_text(encoding="utf-8") == sweep_page(read_rows(sweep), {0: design, 1: design})
     assert said == ["reading designs: 0 of 2", "reading designs: 1 of 2", "drawing charts and layouts"]
+
+
+def test_the_report_is_not_cleared_away_by_the_sweep_while_it_is_written(sweep, monkeypatch):
+    replace = os.replace
+
+    def clear_and_replace(written, path):
+        clear_half_written(sweep)
+        replace(written, path)
+
+    (sweep / CLAIM_FILE).write_text("{}")
+    monkeypatch.setattr("os.replace", clear_and_replace)
+    write_report(sweep)
+
+
+def test_no_lock_is_left_in_the_folder_of_a_run(run):
+    before = {*run.iterdir()}
+    write_report(run)
+    assert {*run.iterdir()} - before == {run / "report.html"}
 
 
 def test_a_design_of_a_sweep_that_cannot_be_read_is_told(sweep):

@@ -17,11 +17,10 @@ from multilens.app.space import Asked, read_space
 from multilens.app.sweep import aligned
 from multilens.app.sweep_folder import claim_of
 from multilens.app.sweep_job import compute_if_missing
-from multilens.storage import write_whole
 from multilens.sweep_row import COLUMN, Cell, SweepRow, cells
 from multilens.sweeps.claim import claim_folder
 from multilens.sweeps.job import read_job
-from multilens.sweeps.locks import clear_half_written
+from multilens.sweeps.locks import clear_half_written, write_held
 from multilens.sweeps.space import each_end
 from multilens.sweeps.table import write_tables
 from multilens.table_text import csv_text
@@ -168,7 +167,7 @@ def _told(options: _Options, best: Sequence[SweepRow]) -> int:
     if not best:
         tell(f"none of {options.trials} trials has a design; {options.out} says why")
         return NOTHING_FOUND
-    write_whole(options.out / BEST, csv_text(cells(best)))
+    write_held(options.out / BEST, csv_text(cells(best)))
     print(aligned(_short(options, best)))
     print(options.out / BEST)
     return DONE

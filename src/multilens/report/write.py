@@ -10,6 +10,8 @@ from multilens.report.sweep_page import sweep_page, worth_drawing
 from multilens.runs import CONFIG, DESIGN, LOG
 from multilens.storage import ESTIMATES, write_whole
 from multilens.sweep_row import UNREADABLE, SweepRow
+from multilens.sweeps.claim import CLAIM_FILE
+from multilens.sweeps.locks import write_held
 from multilens.sweeps.table import read_rows
 
 REPORT = "report.html"
@@ -44,8 +46,11 @@ def write_report(
         folder = Path(what)
         text = _page_of_run(folder) if (folder / DESIGN).is_file() else _page_of_sweep(folder, listener)
         path = Path(what) / REPORT if path is None else path
-    write_whole(Path(path), text)
-    return Path(path)
+    path = Path(path)
+    # Where a sweep goes on it clears away what is half written and not held.
+    write = write_held if (path.parent / CLAIM_FILE).is_file() else write_whole
+    write(path, text)
+    return path
 
 
 def _page_of_run(folder: Path) -> str:

@@ -11,6 +11,8 @@ from pathlib import Path
 
 from filelock import FileLock, Timeout
 
+from multilens.storage import write_whole
+
 TABLE, AGREEMENT, CLAIM = "table", "agreement", "sweep"
 """What there is to write besides the jobs, whose locks are called by their numbers."""
 
@@ -51,6 +53,12 @@ def forget(folder: Path, name: str) -> None:
     Somebody may hold the old file then while somebody else holds a new one: both must find that nothing is left to do.
     """
     _lock_file(folder, name).unlink(missing_ok=True)
+
+
+def write_held(path: Path, content: str) -> None:
+    """Write a file into the folder of a sweep, whole or not at all, with its lock held; see `held` and `write_whole`."""
+    with held(path.parent, path.name.split(".")[0]):
+        write_whole(path, content)
 
 
 def clear_half_written(folder: Path) -> None:
