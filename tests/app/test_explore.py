@@ -7,7 +7,7 @@ import signal
 import subprocess
 import sys
 from pathlib import Path
-from time import sleep
+from time import monotonic, sleep
 
 import pytest
 
@@ -166,7 +166,8 @@ def test_an_exploration_that_was_killed_goes_on_where_it_was(tmp_path: Path):
     words = [*TINY, "back.outline.height=20", WIDTH, "minimise=rmse", "trials=4", "out=killed"]
     command = [sys.executable, "-c", "from multilens.app import main; main()", "explore", *words]
     with subprocess.Popen(command, cwd=tmp_path, stdout=subprocess.DEVNULL) as process:
-        while not (tmp_path / "killed/1/row.json").exists() and process.poll() is None:
+        deadline = monotonic() + 100
+        while not (tmp_path / "killed/1/row.json").exists() and process.poll() is None and monotonic() < deadline:
             sleep(0.01)
         os.kill(process.pid, signal.SIGKILL)
     before = {path: path.stat().st_mtime_ns for path in tmp_path.glob("killed/*/row.json")}

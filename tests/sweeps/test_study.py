@@ -5,6 +5,7 @@ import signal
 import subprocess
 import sys
 from pathlib import Path
+from time import monotonic, sleep
 
 import numpy as np
 import pytest
@@ -172,11 +173,13 @@ def test_two_processes_try_each_trial_once(tmp_path):
 
 def test_a_process_that_was_killed_is_followed_by_one_that_repeats_its_last_trial_alone(tmp_path):
     worker = start(tmp_path)
-    while len(computed(tmp_path)) < 5 and worker.poll() is None:
-        pass
+    deadline = monotonic() + 60
+    while len(computed(tmp_path)) < 5 and worker.poll() is None and monotonic() < deadline:
+        sleep(0.01)
     os.kill(worker.pid, signal.SIGKILL)
     worker.wait()
     before = computed(tmp_path)
+    assert len(before) >= 5
     assert start(tmp_path).wait(timeout=60) == 0
     again = computed(tmp_path)[len(before) :]
     assert again in (list(range(before[-1], 12)), list(range(before[-1] + 1, 12)))
