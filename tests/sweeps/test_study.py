@@ -28,14 +28,14 @@ def falling(number, settings):
 
 
 def run(folder, compute, space=(WIDTH,), objectives=("rmse",), trials=15, seed=0):
-    study = open_study(folder, len(objectives), seed)
+    study = open_study(folder, len(objectives))
     tried = []
 
     def noted(number, settings):
         tried.append((number, settings))
         return compute(number, settings)
 
-    best = explore(study, folder, space, objectives, trials, noted)
+    best = explore(study, folder, space, objectives, trials, seed, noted)
     return best, tried
 
 
@@ -111,7 +111,7 @@ def test_a_record_that_was_altered_is_refused(tmp_path):
     journal = tmp_path / JOURNAL
     journal.write_bytes(journal.read_bytes().replace(b'{"op_code"', b'"op_code"', 2))
     with pytest.raises(ValueError, match=r"."):
-        open_study(tmp_path, 1, 0)
+        open_study(tmp_path, 1)
 
 
 def test_what_came_to_nothing_is_no_number_and_is_stayed_away_from(tmp_path):
@@ -125,7 +125,7 @@ def test_what_came_to_nothing_is_no_number_and_is_stayed_away_from(tmp_path):
     (best,), tried = run(tmp_path, fits, trials=40)
     widths = [float(dict(settings)["width"]) for _, settings in tried]
     assert widths[best] == max(width for width in widths if width <= 50)
-    states = {trial.number: trial.state.name for trial in open_study(tmp_path, 1, 0).trials}
+    states = {trial.number: trial.state.name for trial in open_study(tmp_path, 1).trials}
     assert states == {n: "PRUNED" if width > 50 else "COMPLETE" for n, width in enumerate(widths)}
     # Of random widths a quarter would be above 70.
     assert np.mean([width > 70 for width in widths[10:]]) < 0.1
@@ -134,7 +134,7 @@ def test_what_came_to_nothing_is_no_number_and_is_stayed_away_from(tmp_path):
 def test_nothing_is_learned_from_a_fault(tmp_path):
     best, _ = run(tmp_path, lambda number, settings: SweepRow(number, settings, FAILED, "RuntimeError"), trials=3)
     assert best == ()
-    assert {trial.state.name for trial in open_study(tmp_path, 1, 0).trials} == {"FAIL"}
+    assert {trial.state.name for trial in open_study(tmp_path, 1).trials} == {"FAIL"}
 
 
 WORKER = """
@@ -152,7 +152,7 @@ def compute(number, settings):
     time.sleep(0.05)
     return falling(number, settings)
 
-explore(open_study(folder, 1, 0), folder, (WIDTH,), ("rmse",), 12, compute)
+explore(open_study(folder, 1), folder, (WIDTH,), ("rmse",), 12, 0, compute)
 """
 
 

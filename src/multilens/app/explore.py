@@ -101,9 +101,15 @@ def explore_command(words: Sequence[str]) -> int:
     from multilens.sweeps.study import explore, open_study
 
     with refused_at(f"out: {options.out}"):
-        study = open_study(options.out, len(options.objectives), options.seed)
+        study = open_study(options.out, len(options.objectives))
     best = explore(
-        study, options.out, asked.space, options.objectives, options.trials, partial(_row, options.out, asked)
+        study,
+        options.out,
+        asked.space,
+        options.objectives,
+        options.trials,
+        options.seed,
+        partial(_row, options.out, asked),
     )
     return _told(options, [row for row in write_tables(options.out) if row.job in best])
 

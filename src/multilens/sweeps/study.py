@@ -14,12 +14,11 @@ from time import sleep
 from typing import Any
 
 import optuna
-from optuna.distributions import BaseDistribution
-from optuna.samplers import BaseSampler, TPESampler
+from optuna.samplers import TPESampler
 from optuna.storages import JournalStorage
 from optuna.storages.journal import JournalFileBackend
 from optuna.study import Study, StudyDirection
-from optuna.trial import FrozenTrial, Trial, TrialState
+from optuna.trial import Trial, TrialState
 
 from multilens.sweep_row import FAILED, SweepRow
 from multilens.sweeps.locks import BETWEEN_LOOKS, free_lock, held, held_if_free
@@ -31,13 +30,12 @@ Settings = tuple[tuple[str, str], ...]
 Compute = Callable[[int, Settings], SweepRow]
 
 
-def open_study(folder: Path, objectives: int, seed: int) -> Study:
+def open_study(folder: Path, objectives: int) -> Study:
     """Open the record of an exploration, or begin one.
 
     Args:
         folder: of the exploration; there.
         objectives: how many numbers are to be made least, > 0.
-        seed: of what is chosen, >= 0.
 
     Raises:
         ValueError: the record is damaged.
@@ -48,13 +46,12 @@ def open_study(folder: Path, objectives: int, seed: int) -> Study:
         storage=JournalStorage(_journal(folder)),
         study_name=STUDY,
         directions=[StudyDirection.MINIMIZE] * objectives,
-        sampler=_BegunAnew(seed),
         load_if_exists=True,
     )
 
 
 def explore(
-    study: Study, folder: Path, space: Space, objectives: Sequence[str], trials: int, compute: Compute
+    study: Study, folder: Path, space: Space, objectives: Sequence[str], trials: int, seed: int, compute: Compute
 ) -> tuple[int, ...]:
     """Try until there are enough trials, and give those that no other beats in every objective at once.
 
@@ -67,13 +64,14 @@ def explore(
         space: what may be chosen.
         objectives: names of numbers of a `SweepRow`.
         trials: how many there are to be, with those that are there already.
+        seed: of what is chosen, >= 0.
         compute: gives the row of a trial by its number and settings, at once where it was computed before.
 
     Returns:
         The numbers of the best, ascending: of one objective those with the least, of several the Pareto front.
     """
     while True:
-        with _next(study, folder, space, trials) as trial:
+        with _next(study, folder, space, trials, seed) as trial:
             if trial is not None:
                 _tell(study, trial, compute(trial.number, _settings(trial, space)), objectives)
             elif study.get_trials(deepcopy=False, states=(TrialState.RUNNING,)):
@@ -84,7 +82,7 @@ def explore(
 
 
 @contextmanager
-def _next(study: Study, folder: Path, space: Space, trials: int) -> Iterator[Trial | None]:
+def _next(study: Study, folder: Path, space: Space, trials: int, seed: int) -> Iterator[Trial | None]:
     """Give a trial whose lock is held, one that was left behind or a new one; None where all are done or with others."""
     with ExitStack() as locks:
         with held(folder, STUDY):
@@ -92,6 +90,9 @@ def _next(study: Study, folder: Path, space: Space, trials: int) -> Iterator[Tri
             if trial is None and len(study.get_trials(deepcopy=False)) < trials:
                 trial = study.ask()
                 locks.enter_context(held(folder, str(trial.number)))
+            if trial is not None:
+                # Begun anew for each trial: what is chosen must not depend on what this process chose before.
+                study.sampler = TPESampler(seed=Random(f"{seed} {trial.number}").getrandbits(32))
                 _settings(trial, space)
         yield trial
 
@@ -142,28 +143,3 @@ def _journal(folder: Path) -> JournalFileBackend:
             os.truncate(file, whole)
     # Optuna's own lock outlives a process that is killed, for half a minute; this one does not.
     return JournalFileBackend(str(file), lock)  # pyright: ignore[reportArgumentType] -- only acquire and release are called
-
-
-class _BegunAnew(BaseSampler):
-    """Optuna's sampler, begun anew for each trial from the seed and the trial's number."""
-
-    def __init__(self, seed: int) -> None:
-        self._seed = seed
-        self._sampler = TPESampler(seed=seed)
-
-    def before_trial(self, study: Study, trial: FrozenTrial) -> None:
-        self._sampler = TPESampler(seed=Random(f"{self._seed} {trial.number}").getrandbits(32))
-        self._sampler.before_trial(study, trial)
-
-    def infer_relative_search_space(self, study: Study, trial: FrozenTrial) -> dict[str, BaseDistribution]:
-        return self._sampler.infer_relative_search_space(study, trial)
-
-    def sample_relative(
-        self, study: Study, trial: FrozenTrial, search_space: dict[str, BaseDistribution]
-    ) -> dict[str, Any]:
-        return self._sampler.sample_relative(study, trial, search_space)
-
-    def sample_independent(
-        self, study: Study, trial: FrozenTrial, param_name: str, param_distribution: BaseDistribution
-    ) -> Any:
-        return self._sampler.sample_independent(study, trial, param_name, param_distribution)
