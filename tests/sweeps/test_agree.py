@@ -162,6 +162,12 @@ def test_where_there_is_no_room_at_all_a_worse_job_says_so() -> None:
     )
 
 
+def test_a_job_that_was_asked_more_than_other_lenses_says_nothing() -> None:
+    few, many = strip(13.5, [2.5, 11.0], 1.0), strip(13.5, [2.5, 6.5, 10.5], 0.5)
+    nearer = replace(few.problem, depths=torch.tensor([450.0], dtype=torch.float64))
+    assert why_worse(many, {4: as_given(nearer, few.layout)}) == ""
+
+
 def test_a_job_that_is_no_worse_says_nothing() -> None:
     few, many = weakly(asked(2)), ml.solve(asked(3), starts=8, patience=0, proof=0)
     assert many.score < few.score

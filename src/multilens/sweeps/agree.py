@@ -131,14 +131,16 @@ def _is_better(one: Design, other: Design) -> bool:
 
 
 def _is_fewer(one: Design, other: Design) -> bool:
-    """Whether a design has some of the other's lenses and no more, and its score reads the same."""
+    """Whether a design has some of the other's lenses and no more, and was asked the same of them."""
     few, many = Counter(one.problem.lenses), Counter(other.problem.lenses)
-    return few < many and one.problem.metric == other.problem.metric
+    return few < many and _as_text(one.problem, lenses=False) == _as_text(other.problem, lenses=False)
 
 
-def _as_text(question: Question) -> str:
+def _as_text(question: Question, lenses: bool = True) -> str:
+    """Give all that is asked as text, with the lenses that it is asked of or without."""
     try:
-        return json.dumps(problem_record(question))
+        asked = problem_record(question)
+        return json.dumps(asked if lenses else asked | {"lenses": None})
     except TypeError:
         # A score or a cue of one's own is like no other.
         return str(id(question))
