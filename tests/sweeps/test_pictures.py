@@ -5,6 +5,7 @@ import pytest
 from multilens.runs import write_design
 from multilens.sweep_row import SweepRow
 from multilens.sweeps.job import row_of, write_job
+from multilens.sweeps.locks import clear_half_written
 from multilens.sweeps.pictures import draw_pictures
 
 STEMS = {"count", "layouts", "front", "map"}
@@ -31,7 +32,9 @@ def sweep(tmp_path, design):
 
 
 def contents(folder):
-    return {str(path.relative_to(folder)): path.read_bytes() for path in sorted(folder.rglob("*")) if path.is_file()}
+    """Give every file but the locks, which are empty."""
+    files = (path for path in sorted(folder.rglob("*")) if path.is_file() and path.suffix != ".lock")
+    return {str(path.relative_to(folder)): path.read_bytes() for path in files}
 
 
 def test_a_sweep_gets_its_pictures_and_nothing_else_is_touched(sweep):
@@ -42,6 +45,27 @@ def test_a_sweep_gets_its_pictures_and_nothing_else_is_touched(sweep):
     assert {name: after[name] for name in before} == before
     assert set(after) - set(before) == {path.name for path in pictures}
     assert [path.name for path in sweep.parent.iterdir()] == ["sweep"]
+
+
+class KilledError(BaseException):
+    """Stands for a kill: nobody catches it."""
+
+
+def test_what_a_kill_leaves_half_drawn_is_cleared_away(sweep, monkeypatch):
+    def killed(figures, folder):
+        (folder / "count.svg").write_text("<svg")
+        raise KilledError
+
+    before = contents(sweep)
+    monkeypatch.setattr("multilens.plot.figures.save_figures", killed)
+    monkeypatch.setattr("multilens.storage.shutil.rmtree", lambda folder, ignore_errors: None)
+    with pytest.raises(KilledError):
+        draw_pictures(sweep)
+    monkeypatch.undo()
+    assert contents(sweep) != before
+    assert [path.name for path in sweep.parent.iterdir()] == ["sweep"]
+    clear_half_written(sweep)
+    assert contents(sweep) == before
 
 
 def test_the_same_sweep_is_drawn_the_same(sweep):

@@ -13,7 +13,7 @@ from filelock import FileLock, Timeout
 
 from multilens.storage import write_whole
 
-TABLE, AGREEMENT, CLAIM = "table", "agreement", "sweep"
+TABLE, AGREEMENT, CLAIM, PICTURES = "table", "agreement", "sweep", "pictures"
 """What there is to write besides the jobs, whose locks are called by their numbers."""
 
 BETWEEN_LOOKS = 0.2

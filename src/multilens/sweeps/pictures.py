@@ -15,6 +15,7 @@ from multilens.question import Question
 from multilens.runs import DESIGN
 from multilens.storage import scratch_folder
 from multilens.sweep_row import SweepRow
+from multilens.sweeps.locks import PICTURES, held
 from multilens.sweeps.table import read_rows
 
 
@@ -41,7 +42,8 @@ def draw_pictures(folder: Path) -> tuple[Path, ...]:
     folder = folder.resolve()
     rows = read_rows(folder)
     figures = sweep_figures(rows, _answers(folder, shown(rows)))
-    with scratch_folder(folder) as drawn:
+    # In the sweep's own folder and under a lock, what a kill leaves is cleared away when the sweep is run again.
+    with held(folder, PICTURES), scratch_folder(folder / PICTURES) as drawn:
         names = [path.name for path in save_figures(figures, drawn)]
         for name in names:
             os.replace(drawn / name, folder / name)
