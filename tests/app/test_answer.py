@@ -71,6 +71,32 @@ def test_a_sweep_has_a_table_instead(capsys: pytest.CaptureFixture[str]):
     assert "table.jsonl" in capsys.readouterr().err
 
 
+def test_a_sweep_of_an_experiment_has_a_table_instead(capsys: pytest.CaptureFixture[str]):
+    assert run_command(["design", "--json", *QUESTION, "hydra.mode=MULTIRUN"]) == 2
+    assert "table.jsonl" in capsys.readouterr().err
+    assert not list(Path.cwd().iterdir())
+
+
+@pytest.mark.parametrize("terminal", [False, True])
+def test_where_no_file_can_be_written_the_answer_is_printed_once(
+    terminal: bool, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+):
+    monkeypatch.setattr("sys.stdout.isatty", lambda: terminal)
+    with pytest.raises(OSError, match="No space left"):
+        answer("said", None, full_disk, as_json=False)
+    assert capsys.readouterr().out == "said\n"
+
+
+def test_where_no_file_can_be_written_the_json_names_none(capsys: pytest.CaptureFixture[str]):
+    with pytest.raises(OSError, match="No space left"):
+        answer("said", None, full_disk, as_json=True, least=7)
+    assert json.loads(capsys.readouterr().out) == {"least": 7, "files": [], "design": None}
+
+
+def full_disk() -> list[Path]:
+    raise OSError(28, "No space left on device")
+
+
 def test_at_a_terminal_the_words_come_before_the_files_and_else_after(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ):

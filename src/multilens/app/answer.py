@@ -29,15 +29,28 @@ def answer(
         write: writes the files and gives their paths.
         as_json: whether to print `others`, the paths and the design as `design.json` holds it, instead of words.
         others: plain data.
+
+    Raises:
+        OSError: the files cannot be written; the answer is printed all the same.
     """
     # Behind a pipe whoever reads may stop at any line, and the files are to be written all the same.
     at_once = sys.stdout.isatty() and not as_json
     if at_once:
         print(said)
-    files = [str(path) for path in write()]
+    left = "" if at_once else said
+    try:
+        files = [str(path) for path in write()]
+    except OSError:
+        # A full disk must not take the answer of a long search with it.
+        _print(left, design, [], as_json, others)
+        raise
+    _print(left, design, files, as_json, others)
+
+
+def _print(said: str, design: "Design | None", files: Sequence[str], as_json: bool, others: dict[str, Any]) -> None:
     if as_json:
         content = None if design is None else json.loads(design.to_json())
         print(json.dumps({**others, "files": files, "design": content}, indent=2, allow_nan=False))
         return
-    for line in [*([] if at_once else [said]), *([""] if files else []), *files]:
+    for line in [*filter(None, [said]), *([""] if files else []), *files]:
         print(line)

@@ -64,16 +64,16 @@ def design_command(words: Sequence[str]) -> int:
     as_json, words = without_flag(words)
     arguments = read_arguments(words)
     flags = _flags(words, arguments)
-    if as_json and arguments.multirun:
-        raise RefusedError(
-            f"{FLAG} is for one design: of a sweep, table.jsonl in its folder has a JSON object for each job"
-        )
     sweep = None
     if not (arguments.help or arguments.hydra_help or arguments.shell_completion or arguments.info or arguments.cfg):
         from multilens.app.check import check_command_line
 
         sweep = check_command_line(arguments).sweep
         if sweep is not None:
+            if as_json:
+                raise RefusedError(
+                    f"{FLAG} is for one design: of a sweep, table.jsonl in its folder has a JSON object for each job"
+                )
             from multilens.app.sweep_folder import open_sweep
 
             open_sweep(sweep)
