@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from multilens import storage
-from multilens.storage import folder_written_whole, scratch_folder, write_whole
+from multilens.storage import folder_written_whole, holds_something, scratch_folder, write_whole
 
 
 def test_a_file_is_written_as_it_was_given(tmp_path):
@@ -137,6 +137,26 @@ def test_a_link_to_an_empty_folder_is_followed(tmp_path):
     with folder_written_whole(tmp_path / "run") as inside:
         (inside / "note.txt").write_text("new")
     assert (tmp_path / "real" / "note.txt").read_text() == "new"
+
+
+def test_a_folder_that_vanishes_while_it_is_looked_at_holds_nothing(tmp_path, monkeypatch):
+    (tmp_path / "run").mkdir()
+    looked = type(tmp_path).iterdir
+
+    def iterdir(folder):
+        folder.rmdir()
+        return looked(folder)
+
+    monkeypatch.setattr(type(tmp_path), "iterdir", iterdir)
+    assert not holds_something(tmp_path / "run")
+
+
+def test_files_and_filled_folders_hold_something(tmp_path):
+    assert not holds_something(tmp_path)
+    (tmp_path / "note.txt").write_text("")
+    assert holds_something(tmp_path / "note.txt")
+    assert holds_something(tmp_path)
+    assert not holds_something(tmp_path / "nowhere")
 
 
 def test_a_scratch_folder_vanishes_with_what_is_left_in_it(tmp_path):

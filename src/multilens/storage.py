@@ -102,6 +102,16 @@ def folder_written_whole(folder: Path) -> Iterator[Path]:
             raise
 
 
+def holds_something(path: Path) -> bool:
+    """Say whether there is a file at a path, or a folder that is not empty; one that vanishes meanwhile holds nothing."""
+    try:
+        return any(path.iterdir())
+    except FileNotFoundError:
+        return False
+    except NotADirectoryError:
+        return True
+
+
 def set_aside(path: Path) -> Path:
     """Rename what is damaged to NAME.damaged, or NAME.damaged-2 and so on, and give the new path.
 
@@ -159,7 +169,7 @@ def source_commit() -> str | None:
 
 
 def _refuse_unless_free(folder: Path) -> None:
-    if folder.exists() and not (folder.is_dir() and not any(folder.iterdir())):
+    if holds_something(folder):
         raise FileExistsError(f"folder must be new or empty, got {folder}")
 
 

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 
 from multilens.documents import document, document_content, read_text
 from multilens.fields import number, record, text
-from multilens.storage import folder_written_whole, set_aside
+from multilens.storage import folder_written_whole, holds_something, set_aside
 from multilens.sweep_row import FAILED, UNREADABLE, SweepRow, read_row
 from multilens.sweeps.locks import forget, held_if_free
 
@@ -97,7 +97,7 @@ def kept_job(folder: Path, fingerprint: str, listener: Callable[[str], None] = l
         OtherJobError: the folder was written for another fingerprint.
         OSError: it cannot be read or renamed.
     """
-    if not folder.exists() or (folder.is_dir() and not any(folder.iterdir())):
+    if not holds_something(folder):
         return None
     try:
         sealed = read_job(folder)
