@@ -13,7 +13,7 @@ import multilens as ml
 from multilens.certificate import certify
 from multilens.runs import write_design, write_words
 from multilens.sweeps import agreement
-from multilens.sweeps.agreement import agree_in, end_moving
+from multilens.sweeps.agreement import agree_in, end_moving, end_moving_of
 from multilens.sweeps.job import read_job, refuse_damaged, row_of, write_job
 from multilens.sweeps.table import read_rows
 
@@ -147,6 +147,52 @@ def test_killed_while_files_move_it_ends_the_same(
         monkeypatch.setattr(os, "replace", replaced)
         end_moving(sweep)
         agree_in(sweep)
+    assert contents(sweep) == contents(undisturbed)
+
+
+def kill_while_moving(sweep: Path) -> Path:
+    """Have an agreement end as by a kill, once it has moved the first design, and give that job's folder."""
+    replaced, taken = os.replace, []
+
+    def killed_after_one(source: Path, target: Path) -> None:
+        if taken:
+            raise KilledError
+        replaced(source, target)
+        if target.name == "design.json" and target.parent.parent == sweep:
+            taken.append(target)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(os, "replace", killed_after_one)
+        with pytest.raises(KilledError):
+            agree_in(sweep)
+    return taken[0].parent
+
+
+def test_a_job_that_was_removed_after_a_kill_is_computed_again(
+    sweep: Path, own: dict[int, ml.Design], tmp_path
+) -> None:
+    undisturbed = tmp_path / "undisturbed"
+    shutil.copytree(sweep, undisturbed)
+    agree_in(undisturbed)
+    half = kill_while_moving(sweep)
+    shutil.rmtree(half)
+    end_moving(sweep)
+    assert not half.exists()
+    write(sweep, int(half.name), own[int(half.name)])
+    agree_in(sweep)
+    assert contents(sweep) == contents(undisturbed)
+
+
+def test_whoever_comes_to_a_job_after_a_kill_finds_it_whole(sweep: Path, tmp_path: Path) -> None:
+    undisturbed = tmp_path / "undisturbed"
+    shutil.copytree(sweep, undisturbed)
+    agree_in(undisturbed)
+    half = kill_while_moving(sweep)
+    with pytest.raises(ValueError, match=r"design\.json was altered"):
+        refuse_damaged(half, read_job(half))
+    end_moving_of(half)
+    refuse_damaged(half, read_job(half))
+    end_moving(sweep)
     assert contents(sweep) == contents(undisturbed)
 
 

@@ -63,6 +63,15 @@ def end_moving(folder: Path) -> None:
             _end_moving(folder)
 
 
+def end_moving_of(job: Path) -> None:
+    """Do what `end_moving` does for one job, whose lock is held.
+
+    Args:
+        job: its folder, in that of the sweep.
+    """
+    _move_job(job.parent / MOVING / job.name, job)
+
+
 def _agree(folder: Path, listener: Listener) -> tuple[int, ...]:
     rows = [row for row in read_rows(folder) if row.status != UNREADABLE]
     settings = {row.job: row.settings for row in rows}
@@ -106,6 +115,13 @@ def _end_moving(folder: Path) -> None:
 
 
 def _move_job(new: Path, job: Path) -> None:
+    if not new.is_dir():
+        # Somebody else came to the job and moved it.
+        return
+    if not job.is_dir():
+        # Somebody removed the job since, to have it computed again.
+        shutil.rmtree(new)
+        return
     # The row says which files there are, and is moved last.
     if (new / ROW).exists():
         if ALONE not in read_job(new).checksums:
