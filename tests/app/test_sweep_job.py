@@ -178,6 +178,47 @@ def test_a_job_that_failed_by_a_fault_is_tried_again(tmp_path: Path, monkeypatch
     assert sweep(monkeypatch, tmp_path / "s", "lenses.count=2,3") == 0
 
 
+@pytest.mark.parametrize("faulty", ["multilens.app.sweep_job.row_of", "multilens.runs.write_design"])
+def test_a_fault_once_a_design_is_found_leaves_a_row_as_well(faulty: str, tmp_path: Path, monkeypatch) -> None:
+    def fault(*given):
+        raise ZeroDivisionError("by no fault of yours")
+
+    monkeypatch.setattr(faulty, fault)
+    assert sweep(monkeypatch, tmp_path / "s", "lenses.count=2,3") == 3
+    rows = [json.loads(line) for line in (tmp_path / "s" / "table.jsonl").read_text().splitlines()]
+    assert [(row["status"], row["reason"]) for row in rows] == 2 * [
+        ("failed", "ZeroDivisionError: by no fault of yours")
+    ]
+    assert not list((tmp_path / "s").glob("*/design.json"))
+
+
+def test_a_fault_while_neighbours_agree_leaves_the_table(folder: Path, monkeypatch, capsys) -> None:
+    def fault(*given):
+        raise KeyError(7)
+
+    monkeypatch.setattr("multilens.sweeps.agreement.agree_in", fault)
+    assert sweep(monkeypatch, folder) == 1
+    out, err = capsys.readouterr()
+    assert err == "multilens: neighbours cannot agree: KeyError: 7\n"
+    assert str(folder / "table.csv") in out
+
+
+def test_a_fault_at_the_end_of_a_sweep_is_told_in_one_line(folder: Path, monkeypatch, capsys) -> None:
+    def fault(*given):
+        raise KeyError("rows")
+
+    monkeypatch.setattr("multilens.sweeps.table.write_tables", fault)
+    assert sweep(monkeypatch, folder) == 1
+    assert capsys.readouterr().err == "multilens: KeyError: 'rows'\n"
+
+
+def test_a_job_is_the_same_whatever_the_commit(folder: Path, whole: Path, monkeypatch) -> None:
+    shutil.rmtree(folder / "0")
+    monkeypatch.setattr("multilens.search.solve.source_commit", lambda: "0123abc+")
+    assert sweep(monkeypatch, folder) == 3
+    assert contents(folder) == contents(whole)
+
+
 def test_after_a_full_disk_the_rest_is_computed(tmp_path: Path, whole: Path, monkeypatch, computed, capsys) -> None:
     def fills_up(folder, design):
         if design.layout.count == 3:

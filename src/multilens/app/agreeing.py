@@ -5,7 +5,7 @@ from time import monotonic
 
 from rich.console import Console
 
-from multilens.app.ending import tell
+from multilens.app.ending import tell, told
 
 AT_ONCE = 2.0
 """s; what takes no longer needs no telling."""
@@ -28,8 +28,9 @@ def let_neighbours_agree(folder: Path) -> bool:
 
     try:
         better = agree_in(folder, listen)
-    except (ValueError, OSError) as error:
-        tell(f"neighbours cannot agree: {error}")
+    except Exception as error:
+        # Whatever it is, the finished jobs have their table.
+        tell(f"neighbours cannot agree: {told(error)}")
         return False
     finally:
         status.stop()

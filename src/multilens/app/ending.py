@@ -5,7 +5,7 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from multilens.app.refusal import one_line
+from multilens.app.refusal import RefusedError, one_line
 
 DONE, SYSTEM_FAILED, BAD_INPUT, NOTHING_FOUND, INTERRUPTED, BROKEN_PIPE, TERMINATED = 0, 1, 2, 3, 130, 141, 143
 
@@ -17,6 +17,11 @@ class TerminatedError(BaseException):
 def tell(reason: object) -> None:
     """Say on stderr, in one line, why the command is not done."""
     print(f"multilens: {one_line(str(reason))}", file=sys.stderr, flush=True)
+
+
+def told(error: Exception) -> str:
+    """Give what an exception says; of a fault of ours its name as well, for its words alone may be one key."""
+    return str(error) if isinstance(error, OSError | ValueError | RefusedError) else f"{type(error).__name__}: {error}"
 
 
 @contextmanager

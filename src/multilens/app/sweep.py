@@ -10,9 +10,9 @@ from omegaconf import DictConfig
 
 from multilens.app.agreeing import let_neighbours_agree
 from multilens.app.compose import quicken
-from multilens.app.drawing import pictures_drawn
-from multilens.app.ending import BAD_INPUT, NOTHING_FOUND, SYSTEM_FAILED, tell
+from multilens.app.ending import BAD_INPUT, BROKEN_PIPE, DONE, NOTHING_FOUND, SYSTEM_FAILED, tell, told
 from multilens.app.loading import one_thread_for_workers
+from multilens.app.pictures import pictures_drawn
 from multilens.app.refusal import RefusedError
 from multilens.sweep_row import Cell
 
@@ -32,29 +32,37 @@ class SweepTable(Callback):
 
         Raises:
             SystemExit: a job found nothing, code 3; the folder holds another sweep's job, code 2; something could not be read
-                or written, code 1.
+                or written, or is a fault of ours, code 1.
         """
-        from multilens.app.sweep_job import compute_if_missing
-        from multilens.app.waiting import finish_waiting
-        from multilens.sweep_row import cells
-        from multilens.sweeps.table import CSV, without_empty_columns, write_tables
-
-        folder = Path(config.hydra.sweep.dir)
+        # Hydra would make a warning of any other exception, and go on.
         try:
-            finish_waiting(folder, compute_if_missing)
-            agreed = not config.sweep.agree or let_neighbours_agree(folder)
-            rows = write_tables(folder)
-        except (OSError, RefusedError) as error:
-            # Hydra would make a warning of it.
-            tell(error)
-            raise SystemExit(BAD_INPUT if isinstance(error, RefusedError) else SYSTEM_FAILED) from None
-        print(aligned(without_empty_columns(cells(rows))))
-        print(folder / CSV)
-        drawn = pictures_drawn(folder)
-        if not (agreed and drawn):
-            raise SystemExit(SYSTEM_FAILED)
-        if any(row.score is None for row in rows):
-            raise SystemExit(NOTHING_FOUND)
+            code = _end(config)
+        except BrokenPipeError:
+            code = BROKEN_PIPE
+        except Exception as error:
+            tell(told(error))
+            code = BAD_INPUT if isinstance(error, RefusedError) else SYSTEM_FAILED
+        if code != DONE:
+            raise SystemExit(code)
+
+
+def _end(config: DictConfig) -> int:
+    """Do what is to be done once the last job has ended, and give the exit code."""
+    from multilens.app.sweep_job import compute_if_missing
+    from multilens.app.waiting import finish_waiting
+    from multilens.sweep_row import cells
+    from multilens.sweeps.table import CSV, without_empty_columns, write_tables
+
+    folder = Path(config.hydra.sweep.dir)
+    finish_waiting(folder, compute_if_missing)
+    agreed = not config.sweep.agree or let_neighbours_agree(folder)
+    rows = write_tables(folder)
+    print(aligned(without_empty_columns(cells(rows))))
+    print(folder / CSV)
+    drawn = pictures_drawn(folder)
+    if not (agreed and drawn):
+        return SYSTEM_FAILED
+    return NOTHING_FOUND if any(row.score is None for row in rows) else DONE
 
 
 def aligned(rows: Sequence[Sequence[Cell]]) -> str:

@@ -2,9 +2,9 @@
 
 import traceback
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from omegaconf import DictConfig, OmegaConf
 
@@ -13,7 +13,7 @@ from multilens.app.loading import load_torch
 from multilens.app.plain import plain, yaml_text
 from multilens.app.refusal import RefusedError, one_line
 from multilens.app.search import NothingFoundError
-from multilens.app.searched import Searched, from_here, log_text, searched
+from multilens.app.searched import from_here, log_text, searched
 from multilens.app.sweep_folder import refuse_other_versions
 from multilens.app.waiting import leave_waiting
 from multilens.storage import made_with
@@ -21,8 +21,13 @@ from multilens.sweep_row import FAILED, SweepRow
 from multilens.sweeps.claim import read_claim
 from multilens.sweeps.fingerprint import asked, difference, fingerprint
 from multilens.sweeps.job import OtherJobError, kept_job, row_of, write_job
-from multilens.sweeps.locks import forget, held_if_free
+from multilens.sweeps.locks import AGREEMENT, forget, held_if_free
 from multilens.sweeps.table import write_tables_now_and_then
+
+if TYPE_CHECKING:
+    from multilens.design import Design
+
+Settings = tuple[tuple[str, str], ...]
 
 
 def run_sweep_job(config: DictConfig, folder: Path, overrides: Sequence[str], visible: bool) -> None:
@@ -56,6 +61,10 @@ def compute_if_missing(config: DictConfig, folder: Path, overrides: Sequence[str
     claim, question = read_claim(folder.parent), plain(config)
     refuse_other_versions(claim)
     mark = fingerprint(question, made_with())
+    if (folder.parent / AGREEMENT / folder.name).is_dir():
+        from multilens.sweeps.agreement import end_moving_of
+
+        end_moving_of(folder)
     try:
         kept = kept_job(folder, mark, tell)
     except OtherJobError:
@@ -81,44 +90,44 @@ def _compute(
 
     parts = [line.partition("=") for line in overrides]
     settings = tuple((key.lstrip("+~"), value) for key, _, value in parts if key not in fixed)
-    found, job = _searched(config, visible), int(folder.name)
-    if isinstance(found, Searched):
-        row, lines = row_of(found.design, job, settings, found.seconds), found.log
-        told = in_words(found.design.problem.metric, found.design.score, 4)
-    else:
-        row, lines = SweepRow(job, settings, found.status, found.reason), found.log
-        told = f"{row.status}: {row.reason}"
+    job = int(folder.name)
 
-    def write_files(inside: Path) -> None:
-        if isinstance(found, Searched):
-            write_design(inside, found.design)
-        write_words(inside, config_text, log_text(overrides, *lines))
+    def save(row: SweepRow, log: Sequence[str], design: "Design | None" = None) -> None:
+        def write_files(inside: Path) -> None:
+            if design is not None:
+                write_design(inside, design)
+            write_words(inside, config_text, log_text(overrides, *log))
 
-    write_job(folder, mark, row, write_files)
-    print(f"{from_here(folder)}: {' '.join(f'{key}={value}' for key, value in settings)}: {told}", flush=True)
+        write_job(folder, mark, row, write_files)
 
-
-@dataclass(frozen=True)
-class _Nothing:
-    """Why there is no design: the status of the row, the reason in one line, and what is logged of it."""
-
-    status: str
-    reason: str
-    log: tuple[str, ...]
-
-
-def _searched(config: DictConfig, visible: bool) -> Searched | _Nothing:
     try:
-        return searched(config, visible)
-    except (NothingFoundError, RefusedError) as error:
-        reason = one_line(str(error))
-        return _Nothing("infeasible" if isinstance(error, NothingFoundError) else "refused", reason, (reason,))
+        found = searched(config, visible)
+        design = _without_commit(found.design)
+        row, told = row_of(design, job, settings, found.seconds), in_words(design.problem.metric, design.score, 4)
+        save(row, found.log, design)
     except OSError:
         raise
     except Exception as error:
-        # A job that fails by a fault of ours must not take the finished ones' table with it; its log has the whole story.
-        reason = one_line(f"{type(error).__name__}: {error}")
-        return _Nothing(FAILED, reason, (traceback.format_exc(), reason))
+        # A job that fails by a fault of ours must not take the finished ones' table with it.
+        row, log = _row_without_design(error, job, settings)
+        told = f"{row.status}: {row.reason}"
+        save(row, log)
+    print(f"{from_here(folder)}: {' '.join(f'{key}={value}' for key, value in settings)}: {told}", flush=True)
+
+
+def _without_commit(design: "Design") -> "Design":
+    """Give a design without the commit: a job is the same to the byte wherever the source is, and a commit says more."""
+    return design if design.origin is None else replace(design, origin=replace(design.origin, commit=None))
+
+
+def _row_without_design(error: Exception, job: int, settings: Settings) -> tuple[SweepRow, tuple[str, ...]]:
+    """Give the row of a job that left no design, and what is logged of it: of a fault of ours the whole story."""
+    reason = one_line(str(error))
+    if isinstance(error, NothingFoundError | RefusedError):
+        status = "infeasible" if isinstance(error, NothingFoundError) else "refused"
+        return SweepRow(job, settings, status, reason), (reason,)
+    reason = one_line(f"{type(error).__name__}: {error}")
+    return SweepRow(job, settings, FAILED, reason), (traceback.format_exc(), reason)
 
 
 def _why_another(folder: Path, question: Mapping[str, Any]) -> str:

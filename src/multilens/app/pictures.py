@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from multilens.app.ending import tell
+from multilens.app.ending import tell, told
 
 
 def pictures_drawn(folder: Path) -> bool:
@@ -15,8 +15,9 @@ def pictures_drawn(folder: Path) -> bool:
 
     try:
         pictures = draw_pictures(folder)
-    except OSError as error:
-        tell(f"the pictures cannot be drawn: {error}")
+    except Exception as error:
+        # Whatever it is, the tables are printed already.
+        tell(f"the pictures cannot be drawn: {told(error)}")
         return False
     for picture in pictures:
         print(folder / picture.name)

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from multilens.app.command import run_command
-from multilens.app.drawing import pictures_drawn
+from multilens.app.pictures import pictures_drawn
 
 SMALL = ["experiment=spider", "search.starts=2", "search.patience=0", "search.proof=1", "depth.count=16"]
 
@@ -44,12 +44,18 @@ def test_plot_of_a_sweep_that_found_nothing_is_refused(swept: Path, tmp_path: Pa
     assert "none of its jobs has one" in capsys.readouterr().err
 
 
-def test_pictures_that_cannot_be_written_are_told_in_one_line(
-    swept: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+@pytest.mark.parametrize(
+    ("error", "reason"),
+    [(OSError(28, "No space left on device"), "No space left"), (KeyError("front"), "KeyError: 'front'")],
+)
+def test_pictures_that_cannot_be_drawn_are_told_in_one_line(
+    error: Exception, reason: str, swept: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ):
-    def full(folder: Path) -> None:
-        raise OSError(28, "No space left on device", str(folder))
+    def failing(folder: Path) -> None:
+        raise error
 
-    monkeypatch.setattr("multilens.sweeps.pictures.draw_pictures", full)
+    monkeypatch.setattr("multilens.sweeps.pictures.draw_pictures", failing)
     assert not pictures_drawn(swept)
-    assert capsys.readouterr().err.count("\n") == 1
+    told = capsys.readouterr().err
+    assert reason in told
+    assert told.count("\n") == 1
