@@ -8,8 +8,10 @@ from hydra.errors import ConfigCompositionException
 from hydra.types import RunMode
 from omegaconf import OmegaConf
 
-from multilens.app.compose import CONFIG_NAME, config_loader, open_hydra
+from multilens.app.compose import CONFIG_NAME, IS_1_3, config_loader, open_hydra
 from multilens.app.quick_loader import QuickLoader
+
+pytestmark = pytest.mark.skipif(not IS_1_3, reason="from Hydra 1.4 on every job is composed from its files")
 
 
 def both(lines: list[str]) -> tuple[object, object]:

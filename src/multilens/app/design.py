@@ -1,6 +1,5 @@
 """`multilens design`, or no command at all: search for a design, or with -m for many of them, as Hydra composes them."""
 
-import inspect
 import os
 import sys
 from argparse import ArgumentParser, Namespace
@@ -51,7 +50,7 @@ def design_command(words: Sequence[str]) -> int:
     """
     import hydra
 
-    from multilens.app.compose import CONFIG_NAME, VERSION_BASE
+    from multilens.app.compose import CONFIG_NAME, IS_1_3, VERSION_BASE
     from multilens.app.launcher import failures_told
     from multilens.app.presets import config_folder
     from multilens.app.run import run_job, run_job_for_programs
@@ -84,8 +83,7 @@ def design_command(words: Sequence[str]) -> int:
     register()
     # Hydra 1.4 takes a list of what its configuration may call in place of the version to be compatible with.
     ours = f"{SweepTable.__module__}.{SweepTable.__qualname__}"
-    takes_list = "execution_whitelist" in inspect.signature(hydra.main).parameters
-    options: dict[str, Any] = {"execution_whitelist": [ours]} if takes_list else {"version_base": VERSION_BASE}
+    options: dict[str, Any] = {"version_base": VERSION_BASE} if IS_1_3 else {"execution_whitelist": [ours]}
     start = hydra.main(config_path=str(config_folder()), config_name=CONFIG_NAME, **options)(
         run_job_for_programs if as_json else run_job
     )
