@@ -298,3 +298,18 @@ def test_the_same_command_finds_its_folder_again(below: Path, monkeypatch, compu
     assert len(list((below / "sweeps" / "mine").iterdir())) == 2
     assert "2 jobs are there from before" in capsys.readouterr().out
     assert computed == [2, 3, 2, 4]
+
+
+def test_only_jobs_are_counted_and_one_is_called_a_job(below: Path, monkeypatch, capsys) -> None:
+    folder = below / "one"
+    assert sweep(monkeypatch, folder, "lenses.count=2,3") == 0
+    shutil.copytree(folder / "1", folder / "1.damaged")
+    shutil.rmtree(folder / "1")
+    capsys.readouterr()
+    assert sweep(monkeypatch, folder, "lenses.count=2,3") == 0
+    assert f"{folder}: 1 job is there from before\n" in capsys.readouterr().out
+
+
+def test_a_job_that_changes_no_key_is_told_without_any(below: Path, monkeypatch, capsys) -> None:
+    assert sweep(monkeypatch, below / "one", "lenses.count=2") == 0
+    assert "one/0: RMSE" in capsys.readouterr().out

@@ -82,7 +82,7 @@ def open_sweep(sweep: Sweep) -> None:
     clear_half_written(sweep.folder)
     done = forget_failed(sweep.folder)
     if done:
-        print(f"{sweep.folder}: {done} jobs are there from before")
+        print(f"{sweep.folder}: {'1 job is' if done == 1 else f'{done} jobs are'} there from before")
     if (sweep.folder / AGREEMENT).is_dir():
         from multilens.sweeps.agreement import end_moving
 

@@ -112,7 +112,8 @@ def _compute(
         row, log = _row_without_design(error, job, settings)
         told = f"{row.status}: {row.reason}"
         save(row, log)
-    print(f"{from_here(folder)}: {' '.join(f'{key}={value}' for key, value in settings)}: {told}", flush=True)
+    words = " ".join(f"{key}={value}" for key, value in settings)
+    print(": ".join(filter(None, (str(from_here(folder)), words, told))), flush=True)
 
 
 def _without_commit(design: "Design") -> "Design":

@@ -122,6 +122,8 @@ def forget_failed(sweep: Path) -> int:
     """
     others = 0
     for row in sweep.glob(f"[0-9]*/{ROW}"):
+        if not row.parent.name.isdecimal():  # set aside
+            continue
         with held_if_free(sweep, row.parent.name) as free:
             if free and _status(row.parent) == FAILED:
                 shutil.rmtree(row.parent)
