@@ -17,7 +17,8 @@ def drawn(rows, cases):
         ({"lenses.count": COUNTS}, ["count", "layouts", "front"]),
         ({"lenses.count": ["2"]}, ["layouts"]),
         ({"search.seed": ["0", "1"]}, ["layouts"]),
-        ({"search.seed": ["0", "1"], "depth": ["near", "far"]}, ["layouts", "map"]),
+        ({"search.seed": ["0", "1"], "depth": ["near", "far"]}, ["layouts"]),
+        ({"search.seed": ["0", "1"], "search.patience": ["0", "1"]}, ["layouts", "map"]),
         ({"lenses.count": COUNTS, "back.outline.width": ["30", "40"]}, ["count", "layouts", "front", "map"]),
     ],
 )

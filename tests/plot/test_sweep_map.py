@@ -57,7 +57,8 @@ def test_unlike_units_never_share_a_map(swept):
 @pytest.mark.parametrize(
     ("keys", "pair"),
     [
-        ({"depth": ["a", "b"], "lenses.count": ["1", "2"]}, ("lenses.count", "depth")),
+        ({"depth": ["a", "b"], "lenses.count": ["1", "2"]}, None),
+        ({"depth.far": ["2000", "3000"], "depth.near": ["200", "300"]}, None),
         ({"depth": ["a", "b"], "back": ["a", "b"], "lenses.count": ["1", "2", "3"]}, ("lenses.count", "back")),
         (
             {"search.seed": ["0", "1", "2", "3"], "back": ["a", "b"], "lenses.count": ["1", "2"]},

@@ -25,7 +25,7 @@ def sweep_figures(rows: Sequence[SweepRow], answers: Mapping[int, tuple[Question
 
     Returns:
         "count" where the number of lenses varies, "layouts" where any was found, "front" where what an error costs varies, and
-        "map" where two keys vary.
+        "map" where two keys vary of the device or the search.
     """
     with style():
         figures = (count_figure(rows), layouts_figure(rows, answers), front_figure(rows), map_figure(rows))

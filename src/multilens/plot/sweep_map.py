@@ -52,7 +52,7 @@ MOST_ROWS, MOST_COLUMNS = 4, 3
 
 
 def map_figure(rows: Sequence[SweepRow]) -> Figure | None:
-    """Draw the error over two swept keys, a map for every setting of the others; None where fewer than two keys vary.
+    """Draw the error over two swept keys, a map for every setting of the others; None where `axes_of_the_map` finds no two.
 
     Maps of one row have the same colours.
 
@@ -87,20 +87,16 @@ def map_figure(rows: Sequence[SweepRow]) -> Figure | None:
 
 
 def axes_of_the_map(rows: Sequence[SweepRow]) -> tuple[str, str] | None:
-    """Give the two keys that a map shows, across and up; None where fewer than two vary that leave the unit as it is, or freely.
+    """Give the two keys that a map shows, across and up; None where fewer than two vary of the device and the search, or freely.
 
-    Of the device before of the search, and that before of what was asked; and keys of many values before those of few.
+    Of the device before of the search, and keys of many values before those of few.
     """
     keys = varied(rows)
     if len(rows) < SPARSEST * prod(map(len, keys.values())):
         return None
-    alike = [key for key in keys if len({_kinds(group) for group in grouped(rows, [key]) if group.found}) == 1]
-    ranked = sorted(alike, key=lambda key: (_rank(key), -len(keys[key])))
+    own = [key for key in keys if not is_asked(key)]
+    ranked = sorted(own, key=lambda key: (not key.startswith(("back", "lenses")), -len(keys[key])))
     return (ranked[0], ranked[1]) if len(ranked) > 1 else None
-
-
-def _rank(key: str) -> int:
-    return 2 if is_asked(key) else 0 if key.startswith(("back", "lenses")) else 1
 
 
 def scale_of(rows: Sequence[SweepRow]) -> Normalize:
