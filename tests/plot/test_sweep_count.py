@@ -52,6 +52,16 @@ def test_a_number_of_lenses_without_a_design_has_a_cross(swept):
     assert "without a design: job 2 (infeasible)" in [text.get_text() for text in figure.texts]
 
 
+def test_a_setting_that_found_nothing_at_all_has_crosses_and_a_name(swept, clear):
+    keys = {"lenses.count": ["1", "2"], "lenses.lens.clearance": ["4", "30"]}
+    rows = swept(keys, lambda s: "infeasible" if s["lenses.lens.clearance"] == "30" else 1.0)
+    with style():
+        figure = count_figure(rows)
+    assert [list(mark[:, 0]) for mark in curves(figure.axes[0], "x")] == [[1, 2]]
+    assert "clearance 30" in [text.get_text() for text in figure.legends[0].get_texts()]
+    clear(figure)
+
+
 def test_there_is_a_panel_for_everything_that_was_asked(swept, clear):
     units = {"mean_square": ("RMSE", "mm"), "relative": ("relative RMSE", "%")}
     rows = swept({"metric": list(units), "lenses.count": list(ERRORS)}, by_count, lambda s: units[s["metric"]])

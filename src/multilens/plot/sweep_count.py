@@ -85,7 +85,8 @@ def draw_error_by_count(ax: Axes, quantity: str, drawn: Sequence[Line], colour: 
     ax.set(xlabel="lenses", ylabel=quantity)
     _set_limits(ax, drawn)
     labels, named = Labels(ax), [line for line in drawn if line.name in colour]
-    for line in drawn:
+    found = [line for line in drawn if line.best]
+    for line in found:
         look = {"color": colour.get(line.name, RULE), "zorder": 3 if line in named else 2}
         ax.plot(*_columns(line.points), marker="o", markersize=MARK, linewidth=1.8, **look)
         ax.plot(*_columns(line.bounds), marker="_", markersize=9, linewidth=1.0, linestyle=":", **look)
@@ -97,7 +98,9 @@ def draw_error_by_count(ax: Axes, quantity: str, drawn: Sequence[Line], colour: 
     for k, line in enumerate(line for line in named if line.failed):
         marks = {"linestyle": "none", "marker": "x", "markersize": MARK + 1, "color": colour[line.name]}
         ax.plot(line.failed, [0.02 + 0.03 * k] * len(line.failed), transform=ax.get_xaxis_transform(), **marks)
-    best = sorted(named, key=lambda line: min(figure for _, figure in line.points))[:MOST_LABELLED]
+    best = sorted((line for line in named if line.best), key=lambda line: min(figure for _, figure in line.points))[
+        :MOST_LABELLED
+    ]
     steps = [(line, *gain) for line in best for gain in line.gains]
     written = [
         labels.write(x, y, percent(change), 2.0, REACH, color=shade(colour[line.name], 0.3), fontsize=PRINT)
@@ -118,8 +121,10 @@ def _key(
     panels: Sequence[tuple[Group, Sequence[Line]]], colour: Mapping[Name, str], names: Mapping[str, str]
 ) -> list[Artist]:
     every, look = [line for _, found in panels for line in found], {"marker": "o", "markersize": MARK, "linewidth": 1.8}
+    nothing, drawn = {"marker": "x", "linestyle": "none"}, {line.name for line in every if line.best}
     key: list[Artist] = [
-        Line2D([], [], color=each, label=in_words(name, names) or "found", **look) for name, each in colour.items()
+        Line2D([], [], color=each, label=in_words(name, names) or "found", **(look if name in drawn else nothing))
+        for name, each in colour.items()
     ]
     grey = len({line.name for line in every} - colour.keys())
     if grey:

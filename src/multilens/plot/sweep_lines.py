@@ -79,7 +79,7 @@ def lines(question: Group, rows: Sequence[SweepRow]) -> tuple[Line, ...]:
     """
     telling = _keys_that_tell_the_count(rows)
     keys = [key for key in varied(rows) if not is_asked(key) and key not in telling]
-    return tuple(Line(group) for group in grouped(question.rows, keys) if group.found)
+    return tuple(Line(group) for group in grouped(question.rows, keys))
 
 
 def colours(every: Sequence[Line]) -> dict[Name, str]:
