@@ -52,6 +52,16 @@ def test_a_job_without_a_layout_says_so(sweep):
     assert words.count("2: infeasible") == 1
 
 
+def test_a_job_whose_design_cannot_be_read_says_so_and_no_error(sweep):
+    rows, answers = sweep
+    words = [text.get_text() for ax in layouts_figure(rows, answers).axes for text in ax.texts]
+    assert "1: 1.00 mm" in words
+    left = {job: answer for job, answer in answers.items() if job != 1}
+    words = [text.get_text() for ax in layouts_figure(rows, left).axes for text in ax.texts]
+    assert "1: unreadable" in words
+    assert "1: 1.00 mm" not in words
+
+
 def test_a_caption_tells_job_error_and_settings():
     row = SweepRow(7, (("depth", "room"), ("lenses.count", "3")), "complete", figure=1.2345, unit="mm")
     assert caption(row, {"lenses.count": "count"}) == ["7: 1.23 mm", "count 3"]

@@ -1,6 +1,7 @@
 """The layouts of a sweep side by side, all to one scale."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -15,7 +16,7 @@ from multilens.plot.sweep_groups import questions, short_names, shortened, varie
 from multilens.plot.units import round_length, significant
 from multilens.question import Question
 from multilens.robust import as_drawn
-from multilens.sweep_row import SweepRow
+from multilens.sweep_row import UNREADABLE, SweepRow
 
 MOST, MOST_COLUMNS = 48, 8
 """Layouts in one picture, and side by side."""
@@ -40,7 +41,7 @@ def layouts_figure(rows: Sequence[SweepRow], answers: Mapping[int, tuple[Questio
         rows: of the table of a sweep.
         answers: what was asked and the layout that was found, by job, of the rows that `shown` gives.
     """
-    panels = shown(rows)
+    panels = [_as_read(row, answers) for row in shown(rows)]
     backs = [answers[row.job][0].back.outline.bounds for row in panels if row.job in answers]
     if not backs:
         return None
@@ -67,6 +68,12 @@ def layouts_figure(rows: Sequence[SweepRow], answers: Mapping[int, tuple[Questio
     longest = max(right - left for left, _, right, _ in backs)
     draw_scale_bar(page.axes(LEFT, top, 3.0, 0.3), scale, longest / 2)
     return page.figure
+
+
+def _as_read(row: SweepRow, answers: Mapping[int, tuple[Question, Layout]]) -> SweepRow:
+    """Give a row as it is, or without its figure where its design could not be read."""
+    lost = row.figure is not None and row.job not in answers
+    return replace(row, figure=None, status=UNREADABLE) if lost else row
 
 
 def _height(
