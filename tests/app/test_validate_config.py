@@ -34,6 +34,9 @@ def test_what_can_be_run_is_told(elsewhere: Path, capsys: pytest.CaptureFixture[
         (["lenses.cuont=3"], 2, "did you mean lenses.count?"),
         (["depth.near=-5"], 2, "depth.near must be > 0 mm"),
         (["lenses.count=2,3"], 2, "several values need multilens -m"),
+        (["lenses=null"], 2, "lenses=null: expected one of"),
+        (["hydra/launcher=null"], 2, "hydra/launcher=null: must be the name of an option, got null"),
+        (["lenses@lenses=null"], 2, "got null"),
         (["--cfg", "job"], 2, "--cfg is no flag of validate-config"),
         # What only building with torch finds: photometric cues need a sensor.
         (["cues=photometric", "lenses=unit"], 2, "sensor"),

@@ -135,6 +135,8 @@ def parsed(lines: list[str], loader: ConfigLoader) -> list[Override]:
                 f"{_line(override)}: what Hydra logs is not set key by key, the run folder has a log of its own"
             )
         if _is_hydras(key):
+            if "/" in key and override.value() is None and not override.is_delete():
+                raise RefusedError(f"{_line(override)}: must be the name of an option, got null")
             continue
         options = loader.get_group_options(key) if "." not in key else []
         if options and not isinstance(override.value(), dict):
@@ -156,11 +158,13 @@ def _line(override: Override) -> str:
 
 def named_values(override: Override, loader: ConfigLoader) -> list[str]:
     """Give what an override sets, as it is written: one value, each of a list, or each of those that it sweeps."""
-    if override.value() is None or override.is_delete():
+    if override.is_delete():
         return []
     if override.is_sweep_override():
         return [line.partition("=")[2] for line in _choices(override, loader)]
     value = override.value()
+    if value is None:
+        return ["null"]
     return [str(one) for one in value] if isinstance(value, list) else [str(value)]
 
 
