@@ -140,6 +140,8 @@ BAD = {
     "trials twice": (["out=x", WIDTH, "trials=1", "trials=2"], "trials must be given once"),
     "an end out of its range": (["out=x", "lenses.count=range(0,3)"], "from 1 to 64, got 0"),
     "the other end": (["out=x", "lenses.count=int(interval(1,65))"], "from 1 to 64, got 65"),
+    "fractions of what is whole": (["out=x", "lenses.count=interval(1,3)"], "lenses.count=1.7"),
+    "a step that leaves whole numbers": (["out=x", "lenses.count=range(1,3.5,0.5)"], "lenses.count=1.5"),
     "a flag": (["out=x", WIDTH, "--fast"], "expected key=value"),
 }
 

@@ -48,6 +48,7 @@ def test_each_end_is_given_once():
     assert list(each_end(space)) == [
         ("", ["width=20", "depth=near"]),
         ("width=45", ["width=45", "depth=near"]),
+        ("width=29.55", ["width=29.55", "depth=near"]),
         ("depth=far", ["width=20", "depth=far"]),
         ("depth=wide", ["width=20", "depth=wide"]),
     ]

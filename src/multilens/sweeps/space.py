@@ -7,6 +7,9 @@ from math import isfinite
 DIGITS = 6
 """Of a number that was chosen: more would only make tables hard to read."""
 
+BETWEEN = 0.382
+"""Part of the way from the least to the largest number at which one is looked at: between whole ends it is hardly ever whole."""
+
 
 @dataclass(frozen=True)
 class Span:
@@ -45,9 +48,11 @@ class Span:
             raise ValueError(f"{self.key}: log must have no step, got {self.step:g}")
 
     @property
-    def ends(self) -> tuple[str, str]:
-        """The least and the largest, as text."""
-        return self.text(self.low), self.text(self.high)
+    def ends(self) -> tuple[str, ...]:
+        """The least and the largest, as text, and of numbers that need not be whole one between, which what is counted refuses."""
+        low, high = self.text(self.low), self.text(self.high)
+        between = self.low + (BETWEEN * (self.high - self.low) if self.step is None else self.step)
+        return (low, high) if self.whole else tuple(dict.fromkeys((low, high, self.text(between))))
 
     def text(self, value: float) -> str:
         """Give a number of the span as it is written, with six digits where that does not leave the span."""
@@ -86,7 +91,7 @@ Space = tuple[Span | Choice, ...]
 
 
 def each_end(space: Space) -> Iterator[tuple[str, list[str]]]:
-    """Give key=value for every key, at the first ends and then with each other end of one key, which is told; "" at first."""
+    """Give key=value for every key, at the first ends and then with another one of one key, which is told; "" at first."""
     first = {each.key: each.ends[0] for each in space}
     yield "", _lines(first)
     for each in space:
