@@ -4,7 +4,10 @@ from itertools import combinations
 import pytest
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
+from matplotlib.transforms import Bbox
 
+from multilens.back import Back
+from multilens.geometry.shape import rectangle
 from multilens.plot.back import draw_layout
 from multilens.plot.bare import best_pairs
 from multilens.plot.style import style
@@ -75,6 +78,20 @@ def test_every_lens_is_numbered_on_the_back_and_in_the_table(cases):
 def test_every_keep_out_is_named(cases):
     words = [text.get_text() for text in word_boxes(drawn(*cases["phone 4"]))]
     assert {"flash", "mic", "lidar", "logo"} <= set(words)
+
+
+@pytest.mark.parametrize("size", [(4.4, 4.4), (5.2, 5.2), (6.0, 6.0)])
+def test_a_name_does_not_cover_a_smaller_keep_out(cases, size):
+    problem, layout = cases["phone 2"]
+    back = Back(problem.back.outline)
+    for x, name in ((14, "microphone"), (20, "a"), (8, "b")):
+        back = back.keep_out(name, rectangle(1.5, 1.5, (x, 120.0)))
+    figure = drawn(type(problem)(back, problem.lenses, problem.depths), layout, size)
+    (box,) = (box for text, box in word_boxes(figure).items() if text.get_text() == "microphone")
+    for part in back.keep_outs:
+        left, top, right, bottom = part.shape.bounds
+        corners = figure.axes[0].transData.transform([(left, bottom), (right, top)])
+        assert not shares_area(box, Bbox(corners))
 
 
 def test_a_name_with_dollar_signs_is_written_as_it_stands(cases):

@@ -182,7 +182,10 @@ def _cost_of_line(start: tuple[float, float], end: tuple[float, float], box: Box
 
 
 def _cost_of_shape(canvas: Canvas, shape: Shape, box: Box) -> float:
-    return 8.0 * bool((_depth_of_corners(canvas, shape, box) < 0).any())
+    whole = canvas.paper_box(shape)
+    # What is smaller than a label hides between its corners.
+    hidden = whole.width <= box.width and box.covers(whole)
+    return 8.0 * bool(hidden or (_depth_of_corners(canvas, shape, box) < 0).any())
 
 
 def _cost_of_rim(canvas: Canvas, outline: Shape, box: Box) -> float:
