@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from math import ceil
+from typing import Any
 
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
@@ -120,8 +121,10 @@ def percent(change: float) -> str:
 def _key(
     panels: Sequence[tuple[Group, Sequence[Line]]], colour: Mapping[Name, str], names: Mapping[str, str]
 ) -> list[Artist]:
-    every, look = [line for _, found in panels for line in found], {"marker": "o", "markersize": MARK, "linewidth": 1.8}
-    nothing, drawn = {"marker": "x", "linestyle": "none"}, {line.name for line in every if line.best}
+    every = [line for _, found in panels for line in found]
+    look: dict[str, Any] = {"marker": "o", "markersize": MARK, "linewidth": 1.8}
+    nothing: dict[str, Any] = {"marker": "x", "linestyle": "none"}
+    drawn = {line.name for line in every if line.best}
     key: list[Artist] = [
         Line2D([], [], color=each, label=in_words(name, names) or "found", **(look if name in drawn else nothing))
         for name, each in colour.items()
