@@ -14,6 +14,8 @@ import pytest
 from multilens.app.command import run_command
 from multilens.sweeps.locks import clear_half_written
 
+pytestmark = pytest.mark.xdist_group("explore")
+
 SMALL = ["back=rectangle", "cues=stereo", "lenses.count=2", "depth.count=8", "search.starts=2", "search.patience=0"]
 TINY = [*SMALL, "search.proof=0"]
 WIDTH = "back.outline.width=interval(30,70)"
