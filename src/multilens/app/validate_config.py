@@ -17,7 +17,7 @@ USAGE = """\
 multilens validate-config key=value ...    tell without a search whether a design can be made
 
 Takes the words of `multilens design`. Everything is composed and built: keys, presets and ranges, what goes together, whether
-every lens has what its cues need, whether the folder is free, and whether the lenses can fit on the back at all. With -m every
+every lens has what its cues need, whether the run folder is free, and whether the lenses can fit on the back at all. With -m every
 value of every swept key is looked at, each with the first values of the others.
 
 Options
