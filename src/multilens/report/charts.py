@@ -94,7 +94,7 @@ def where(row: SweepRow) -> str:
 
 
 def _rightwards(question: Group, rows: Sequence[SweepRow]) -> list[Axis]:
-    numbers = [key for key, values in varied(rows).items() if not is_asked(key) and all(map(_is_number, values))]
+    numbers = [key for key, values in varied(rows).items() if not is_asked(key) and all(map(is_number, values))]
     swept = [Axis(key, lambda row, key=key: float(dict(row.settings)[key]), key) for key in numbers]
     rest = [axis for axis in FIGURES if "lenses.count" not in numbers or axis is not FIGURES[0]]
     return [axis for axis in [*swept, *rest] if len({axis.of(row) for row in question.found} - {None}) > 1]
@@ -139,7 +139,8 @@ def _rounded(axis: Axis, row: SweepRow) -> float:
     return float(f"{number:.{DIGITS}g}")
 
 
-def _is_number(value: str) -> bool:
+def is_number(value: str) -> bool:
+    """Whether a word is read as a number."""
     try:
         float(value)
     except ValueError:

@@ -9,7 +9,7 @@ from multilens.design import Design
 from multilens.plot.page import layout_svg
 from multilens.plot.sweep_groups import figure_of, in_words, short_names, varied
 from multilens.plot.units import significant
-from multilens.report.charts import Chart, charts
+from multilens.report.charts import Chart, charts, is_number
 from multilens.report.page import page
 from multilens.report.table import NONE, Table
 from multilens.report.tables import lens_table
@@ -154,7 +154,11 @@ def _table(rows: Sequence[SweepRow], keys: Mapping[str, Any]) -> Table | None:
     kept = [k for k, name in enumerate(head) if name not in same]
     shown = tuple(tuple(_shown(line[k]) for k in kept) for line in lines)
     names = tuple(str(head[k]).replace("_", " ") for k in kept)
-    words = tuple(k for k, column in enumerate(zip(*shown, strict=True)) if not all(map(_is_number, column)))
+    words = tuple(
+        k
+        for k, column in enumerate(zip(*shown, strict=True))
+        if not all(word == NONE or is_number(word) for word in column)
+    )
     caption = "Every job that found a design. A head sorts; a row, a point and a layout lead to the same job."
     return Table("jobs", caption, names, shown, words)
 
@@ -167,11 +171,3 @@ def _failures(rows: Sequence[SweepRow], keys: Mapping[str, Any], names: Mapping[
 
 def _shown(cell: Cell) -> str:
     return NONE if cell is None or cell == "" else f"{cell:.5g}" if isinstance(cell, float) else str(cell)
-
-
-def _is_number(words: str) -> bool:
-    try:
-        float(words)
-    except ValueError:
-        return words == NONE
-    return True
