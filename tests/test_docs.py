@@ -23,7 +23,6 @@ from typing import Any, get_args, get_origin, get_type_hints
 
 import jaxtyping
 import pytest
-from joblib.externals.loky import get_reusable_executor
 
 import multilens as ml
 from multilens.app.command import run_command
@@ -74,12 +73,10 @@ def each(pages: list[Path]) -> pytest.MarkDecorator:
 
 
 @pytest.fixture(autouse=True)
-def elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+def elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(jaxtyping.config, "jaxtyping_disable", True)
-    yield tmp_path
-    # Workers stay in the folder in which they were started, and would be taken again.
-    get_reusable_executor().shutdown()
+    return tmp_path
 
 
 @dataclass(frozen=True)

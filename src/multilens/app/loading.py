@@ -1,17 +1,7 @@
-"""Torch, loaded for a command, and how many threads whatever computes may have."""
-
-import os
+"""Torch, loaded for a command."""
 
 from multilens.app.busy import busy
 from multilens.app.ending import signals_held
-
-THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMEXPR_NUM_THREADS")
-"""Where libraries look, when they are loaded, for how many threads they may have."""
-
-
-def one_thread_for_workers() -> None:
-    """Have every process that is started from now on compute with one thread: workers are as many as there are cores."""
-    os.environ.update(dict.fromkeys(THREADS, "1"))
 
 
 def load_torch(visible: bool = True) -> None:

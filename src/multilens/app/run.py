@@ -17,6 +17,7 @@ from multilens.app.loading import load_torch
 from multilens.app.plain import plain, yaml_text
 from multilens.app.refusal import RefusedError
 from multilens.app.search import NothingFoundError
+from multilens.app.workers import end_with_parent
 
 
 def run_job_for_programs(config: DictConfig) -> None:
@@ -49,6 +50,7 @@ def run_job(config: DictConfig, as_json: bool = False) -> None:
         # Once and first: the checksum of a drawing is that of the one which is read, whatever becomes of it meanwhile.
         OmegaConf.resolve(config)
         if in_sweep:
+            end_with_parent()
             from multilens.app.sweep_job import run_sweep_job
 
             run_sweep_job(config, folder, overrides, in_process)

@@ -11,9 +11,9 @@ from omegaconf import DictConfig
 from multilens.app.agreeing import let_neighbours_agree
 from multilens.app.compose import quicken
 from multilens.app.ending import BAD_INPUT, BROKEN_PIPE, DONE, NOTHING_FOUND, SYSTEM_FAILED, tell, told
-from multilens.app.loading import one_thread_for_workers
 from multilens.app.pictures import pictures_drawn
 from multilens.app.refusal import RefusedError
+from multilens.app.workers import end_workers, prepare_workers
 from multilens.sweep_row import Cell
 
 
@@ -21,8 +21,8 @@ class SweepTable(Callback):
     """Writes and prints the table of a sweep when its last job has ended; Hydra calls it once, where the sweep was started."""
 
     def on_multirun_start(self, config: DictConfig, **kwargs: Any) -> None:
-        """Have workers compute with one thread each, and configurations composed quickly."""
-        one_thread_for_workers()
+        """Have workers be new, with one thread each, and configurations composed quickly."""
+        prepare_workers()
         hydra = GlobalHydra.instance().hydra
         assert hydra is not None
         quicken(hydra)
@@ -36,6 +36,7 @@ class SweepTable(Callback):
         """
         # Hydra would make a warning of any other exception, and go on.
         try:
+            end_workers()
             code = _end(config)
         except BrokenPipeError:
             code = BROKEN_PIPE

@@ -1,0 +1,76 @@
+"""The processes that a sweep has for its jobs: where they are, how many threads they have, and when they end."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+from joblib import Parallel, delayed
+
+from multilens.app.loading import load_torch
+from multilens.app.workers import THREADS, end_workers, prepare_workers
+
+SWEEP_OF_TWO_SLEEPERS = """
+import os, sys, time
+from joblib import Parallel, delayed
+from multilens.app.workers import end_with_parent
+
+def job():
+    end_with_parent()
+    print(os.getpid(), flush=True)
+    time.sleep(600)
+
+Parallel(n_jobs=2)([delayed(job)() for _ in range(2)])
+"""
+
+
+@pytest.fixture(autouse=True)
+def _no_worker_is_left():
+    yield
+    end_workers()
+
+
+def threads_of_a_worker() -> tuple[int, list[int]]:
+    load_torch()
+    import scipy.optimize  # noqa: F401
+    import torch
+    from threadpoolctl import threadpool_info
+
+    pools: list[dict[str, Any]] = threadpool_info()
+    return torch.get_num_threads(), [pool["num_threads"] for pool in pools]
+
+
+def test_a_worker_computes_with_one_thread_whatever_the_machine_has(monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in THREADS:
+        monkeypatch.setenv(name, "4")
+    prepare_workers()
+    ((torch, pools),) = Parallel(n_jobs=2)([delayed(threads_of_a_worker)()])
+    assert torch == 1
+    assert pools
+    assert set(pools) == {1}
+    assert {os.environ[name] for name in THREADS} == {"1"}
+
+
+def test_a_worker_is_where_its_sweep_is(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def here() -> Path:
+        prepare_workers()
+        return Parallel(n_jobs=2)([delayed(Path.cwd)()])[0]
+
+    assert here() == Path.cwd()
+    monkeypatch.chdir(tmp_path)
+    assert here() == tmp_path
+
+
+@pytest.mark.skipif(os.name != "posix", reason="elsewhere a process does not learn that its parent is gone")
+@pytest.mark.timeout(30)
+def test_workers_of_a_sweep_that_was_killed_end_soon() -> None:
+    command = [sys.executable, "-c", SWEEP_OF_TWO_SLEEPERS]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as sweep:
+        assert sweep.stdout is not None
+        begun = [sweep.stdout.readline() for _ in range(2)]
+        sweep.kill()
+        # The pipe ends when nobody is left who could write into it.
+        assert sweep.stdout.read() == ""
+    assert all(begun)
