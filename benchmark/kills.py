@@ -8,7 +8,6 @@ runs a sweep of 24 jobs undisturbed, then once more with 20 kills, and prints th
 import argparse
 import json
 import random
-import shutil
 import subprocess
 import sys
 import tempfile
@@ -16,7 +15,7 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from time import monotonic
+from time import monotonic, sleep
 
 SWEEP = (
     "experiment=phone_back",
@@ -30,6 +29,15 @@ SWEEP = (
 )
 MAIN = "from multilens.app import main; main()"
 TIMED = ("table.csv", "table.jsonl", "table.md")
+
+END = 6.0
+"""How much of the kills comes after the last job, while jobs agree and pictures are drawn: as much as for so many jobs."""
+
+BEFORE = "before the last job was finished"
+AFTER = "while jobs agreed or pictures were drawn"
+
+BETWEEN_LOOKS = 0.02
+"""s, after which is looked again how many jobs are finished."""
 
 
 @dataclass(frozen=True)
@@ -65,21 +73,18 @@ def killed_sweep(folder: Path, kills: int, seed: int, sweep: Sequence[str] = SWE
 
     Args:
         folder: an empty one.
-        kills: how many.
-        seed: of the moments, which are drawn so that the last kills come near the end.
+        kills: how many; each in a stretch of its own of the work, which are equally long.
+        seed: of the moments in their stretches.
         sweep: words of the command line, without -m and the folder.
     """
     place, undisturbed = folder / "sweep", folder / "undisturbed"
     command = [sys.executable, "-c", MAIN, "-m", *sweep, f"hydra.sweep.dir={place}"]
-    start = _first_job(command, place)
-    began = monotonic()
-    subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
-    whole = monotonic() - began
+    pace = _pace(command, place)
     place.rename(undisturbed)
     draw, during, times, began = random.Random(seed), Counter[str](), dict[str, str](), monotonic()
-    for _ in range(kills):
-        after = draw.uniform(0.5, 1) * start + draw.uniform(0, 2) * max(whole - start, 0) / kills
-        during[_killed(command, after, place)] += 1
+    for stretch in range(kills):
+        moment = (stretch + draw.random()) / kills * (pace.jobs + END)
+        during[_killed(command, place, moment, pace, draw)] += 1
         times = _times(place) | times
     subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
     seconds, now = monotonic() - began, _times(place)
@@ -87,39 +92,56 @@ def killed_sweep(folder: Path, kills: int, seed: int, sweep: Sequence[str] = SWE
     return Outcome(len(now), dict(during), again, _different(place, undisturbed), seconds)
 
 
-def _first_job(command: Sequence[str], place: Path) -> float:
-    """Give after how long a sweep has its first job, s, and remove it again."""
-    began = monotonic()
-    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
-        assert process.stdout is not None
-        process.stdout.readline()
-        took = monotonic() - began
-        process.kill()
-    shutil.rmtree(place)
-    return took
+@dataclass(frozen=True)
+class _Pace:
+    """How long an undisturbed sweep takes: to its first finished job, for one job, and from the last job to the end; s."""
+
+    jobs: int
+    start: float
+    job: float
+    end: float
 
 
-def _killed(command: Sequence[str], after: float, place: Path) -> str:
-    """Run a sweep, kill it after so many seconds, and say what it was doing."""
+def _pace(command: Sequence[str], place: Path) -> _Pace:
+    began, moments = monotonic(), list[float]()
     with subprocess.Popen(command, stdout=subprocess.DEVNULL) as process:
+        while process.poll() is None:
+            moments += [monotonic() - began] * (_finished(place) - len(moments))
+            sleep(BETWEEN_LOOKS)
+    assert process.returncode == 0
+    ended, (first, last) = monotonic() - began, (moments[0], moments[-1])
+    return _Pace(len(moments), first, (last - first) / (len(moments) - 1), ended - last)
+
+
+def _killed(command: Sequence[str], place: Path, moment: float, pace: _Pace, draw: random.Random) -> str:
+    """Run a sweep, kill it at a moment of its work, and say what it was doing.
+
+    Args:
+        command: of the sweep.
+        place: its folder.
+        moment: from 0 to the number of jobs, so many of them are finished and the next one in part; from there to `END` more, the
+            same part of what comes after the jobs is over.
+        pace: how long all that takes.
+        draw: of moments before anything new is finished.
+    """
+    finished = min(int(moment), pace.jobs)
+    part = (moment - finished) * (pace.job if finished < pace.jobs else pace.end / END)
+    # What was finished before the last kill is there at once: the start is as good a moment then.
+    after = part if _finished(place) < finished else part + draw.uniform(0, pace.start)
+    with subprocess.Popen(command, stdout=subprocess.DEVNULL) as process:
+        while process.poll() is None and _finished(place) < finished:
+            sleep(BETWEEN_LOOKS)
         try:
             process.wait(after)
         except subprocess.TimeoutExpired:
             process.kill()
     if process.returncode == 0:
         return "after the end"
-    if not (place / "0").exists():
-        return "before the first job"
-    return "while jobs agree" if _complete(place) else "while jobs are computed"
+    return BEFORE if _finished(place) < pace.jobs else AFTER
 
 
-def _complete(place: Path) -> bool:
-    folders = [path for path in place.iterdir() if path.name.isdigit()]
-    return bool(folders) and all((path / "row.json").exists() for path in folders) and len(folders) == _expected(place)
-
-
-def _expected(place: Path) -> int:
-    return len(list((place.parent / "undisturbed").glob("*/row.json")))
+def _finished(place: Path) -> int:
+    return sum(1 for row in place.glob("*/row.json") if row.parent.name.isdigit())
 
 
 def _times(place: Path) -> dict[str, str]:

@@ -2,7 +2,7 @@ from pathlib import Path
 
 import pytest
 
-from benchmark.kills import killed_sweep
+from benchmark.kills import BEFORE, killed_sweep
 
 SMALL = (
     "back=rectangle",
@@ -20,5 +20,6 @@ def test_a_sweep_that_is_killed_and_run_again_ends_as_if_nothing_had_happened(tm
     outcome = killed_sweep(tmp_path, kills=3, seed=1, sweep=SMALL)
     assert outcome.jobs == 6
     assert sum(outcome.during.values()) == 3
+    assert outcome.during[BEFORE] >= 1
     assert outcome.computed_again == ()
     assert outcome.different == ()
