@@ -1,5 +1,6 @@
 """Jobs of a sweep that begin from their neighbours' layouts."""
 
+import pickle
 from dataclasses import replace
 from itertools import product
 
@@ -95,6 +96,18 @@ def test_the_order_in_which_jobs_were_computed_changes_nothing() -> None:
     settings = crossed(("lenses.count", counts))
     one, other = agree(own, settings), agree(dict(reversed(own.items())), dict(reversed(settings.items())))
     assert [one[job].to_json() for job in own] == [other[job].to_json() for job in own]
+
+
+def test_whoever_computes_changes_nothing() -> None:
+    own = {job: poor(asked(count)) for job, count in enumerate([2, 3])}
+    settings = crossed(("lenses.count", [2, 3]))
+
+    def elsewhere(function, tasks):
+        return [pickle.loads(pickle.dumps(function(*pickle.loads(pickle.dumps(task))))) for task in tasks]
+
+    here, there = agree(own, settings), agree(own, settings, compute=elsewhere)
+    assert here[0] is not own[0]
+    assert [here[job].to_json() for job in own] == [there[job].to_json() for job in own]
 
 
 def test_jobs_that_were_asked_the_same_are_compared_and_left_alone() -> None:

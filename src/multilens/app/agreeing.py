@@ -1,18 +1,24 @@
 """The end of a sweep: neighbours' layouts are tried on each of its jobs, told on the terminal where that takes a while."""
 
+from itertools import starmap
 from pathlib import Path
 from time import monotonic
 
 from rich.console import Console
 
 from multilens.app.ending import tell, told
+from multilens.app.workers import Compute
 
 AT_ONCE = 2.0
 """s; what takes no longer needs no telling."""
 
 
-def let_neighbours_agree(folder: Path) -> bool:
+def let_neighbours_agree(folder: Path, compute: Compute = starmap) -> bool:
     """Let the jobs of a sweep begin from each other's layouts, and say how many became better by it.
+
+    Args:
+        folder: of the sweep.
+        compute: does the work of many jobs, here or in workers.
 
     Returns:
         Whether that could be done; if not, one line on stderr has said why, and every job is as its own search left it.
@@ -27,7 +33,7 @@ def let_neighbours_agree(folder: Path) -> bool:
             status.start()
 
     try:
-        better = agree_in(folder, listen)
+        better = agree_in(folder, listen, compute)
     except Exception as error:
         # Whatever it is, the finished jobs have their table.
         tell(f"neighbours cannot agree: {told(error)}")

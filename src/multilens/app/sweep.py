@@ -13,7 +13,7 @@ from multilens.app.compose import quicken
 from multilens.app.ending import BAD_INPUT, BROKEN_PIPE, DONE, NOTHING_FOUND, SYSTEM_FAILED, tell, told
 from multilens.app.pictures import pictures_drawn
 from multilens.app.refusal import RefusedError
-from multilens.app.workers import end_workers, prepare_workers
+from multilens.app.workers import computing_as, end_workers, prepare_workers
 from multilens.sweep_row import Cell
 
 
@@ -36,13 +36,14 @@ class SweepTable(Callback):
         """
         # Hydra would make a warning of any other exception, and go on.
         try:
-            end_workers()
             code = _end(config)
         except BrokenPipeError:
             code = BROKEN_PIPE
         except Exception as error:
             tell(told(error))
             code = BAD_INPUT if isinstance(error, RefusedError) else SYSTEM_FAILED
+        finally:
+            end_workers()
         if code != DONE:
             raise SystemExit(code)
 
@@ -56,7 +57,7 @@ def _end(config: DictConfig) -> int:
 
     folder = Path(config.hydra.sweep.dir)
     finish_waiting(folder, compute_if_missing)
-    agreed = not config.sweep.agree or let_neighbours_agree(folder)
+    agreed = not config.sweep.agree or let_neighbours_agree(folder, computing_as(config.hydra.launcher))
     rows = write_tables(folder)
     print(aligned(without_empty_columns(cells(rows))))
     print(folder / CSV)

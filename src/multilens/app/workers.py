@@ -2,10 +2,18 @@
 
 import os
 import sys
+from collections.abc import Callable, Iterable, Sequence
 from functools import cache
+from itertools import starmap
 from multiprocessing import parent_process
 from threading import Thread
 from time import sleep
+from typing import Any
+
+from omegaconf import DictConfig
+
+Compute = Callable[[Callable[..., Any], Sequence[tuple[Any, ...]]], Iterable[Any]]
+"""What calls a function with the arguments of each task and gives what comes out in their order, such as `itertools.starmap`."""
 
 THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMEXPR_NUM_THREADS")
 """Where libraries look, when they are loaded, for how many threads they may have."""
@@ -18,6 +26,23 @@ def prepare_workers() -> None:
     """Have every worker that computes from now on be a new process of one thread: workers are as many as there are cores."""
     end_workers()
     os.environ.update(dict.fromkeys(THREADS, "1"))
+
+
+def computing_as(launcher: DictConfig) -> Compute:
+    """Give what computes many tasks as a sweep's launcher does its jobs: in workers by joblib, or else here.
+
+    Args:
+        launcher: its configuration.
+    """
+    if "joblib" not in launcher._target_:
+        return starmap
+
+    def compute(function: Callable[..., Any], tasks: Sequence[tuple[Any, ...]]) -> Iterable[Any]:
+        from joblib import Parallel, delayed
+
+        return Parallel(launcher.n_jobs, return_as="generator")(delayed(function)(*task) for task in tasks)
+
+    return compute
 
 
 def end_workers() -> None:

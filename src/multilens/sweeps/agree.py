@@ -2,8 +2,9 @@
 
 import json
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
+from itertools import starmap
 
 from multilens.certificate import certify
 from multilens.design import Design
@@ -15,41 +16,52 @@ from multilens.sweep_row import in_order
 
 Settings = Sequence[tuple[str, str]]
 Listener = Callable[[int, int], None]
+Task = tuple[Design, Sequence[Design]]
+Compute = Callable[[Callable[..., Design | None], Sequence[Task]], Iterable[Design | None]]
+"""What calls a function with the arguments of each task and gives what comes out in their order, such as `itertools.starmap`."""
 
 PROGRESS = 1e-6
 """Part of a score by which a layout must be better to take the place of another: less is a matter of rounding."""
 
-MOST_PASSES = 20
-"""Through all jobs. A pass carries what is good from one end of the sweep to the other; few are needed."""
+MOST_PASSES = 100
+"""Through all jobs. A pass carries what is good two values further; most sweeps need five or less."""
 
 
 def agree(
-    own: Mapping[int, Design], settings: Mapping[int, Settings], listener: Listener = lambda turn, job: None
+    own: Mapping[int, Design],
+    settings: Mapping[int, Settings],
+    listener: Listener = lambda turn, job: None,
+    compute: Compute = starmap,
 ) -> dict[int, Design]:
     """Give every job the best design that it, or its neighbours' layouts, lead to.
 
-    Passes go up and down through the jobs by their numbers. In each a job begins from the layouts that neighbours have come to
-    since it last looked, whole, with lenses added or left out, and keeps its own unless it finds a better one. The outcome
-    depends on nothing but what is given: not on who computed it, nor in which order.
+    In each pass a job begins from the layouts that neighbours have come to since it last looked, whole, with lenses added or
+    left out, and keeps its own unless it finds a better one. Neighbours are an odd number of steps apart, so first every other
+    job looks and then those between them: none has to wait for another within a half. The outcome depends on nothing but what
+    is given: not on who computed it, nor in which order.
 
     Args:
         own: what each job's own search found, feasible, by its number.
         settings: the swept keys and their values of every job, also of those that found nothing.
-        listener: told of the pass, from 1, and the job that is looked at.
+        listener: told of the pass, from 1, and the job that has been looked at.
+        compute: does the work of many jobs, here or elsewhere.
 
     Returns:
         A design for each of the same jobs, never worse than its own.
     """
-    near = unlike_neighbours(own, settings)
+    near, steps = unlike_neighbours(own, settings), {job: sum(place) for job, place in _places(settings).items()}
     now, seen = dict(own), {}
     for turn in range(1, MOST_PASSES + 1):
         before = dict(now)
-        for job in sorted(own, reverse=turn % 2 == 0):
-            news = [other for other in near[job] if seen.get((job, other)) is not now[other]]
-            seen |= {(job, other): now[other] for other in news}
-            if news:
+        for half in (0, 1):
+            jobs = [job for job in sorted(own) if steps[job] % 2 == half]
+            news = {job: [other for other in near[job] if seen.get((job, other)) is not now[other]] for job in jobs}
+            seen |= {(job, other): now[other] for job in jobs for other in news[job]}
+            looking = [job for job in jobs if news[job]]
+            tasks = [(now[job], [now[other] for other in news[job]]) for job in looking]
+            for job, better in zip(looking, compute(_better_by, tasks), strict=True):
                 listener(turn, job)
-                now[job] = _begun_from(now[job], [now[other] for other in news])
+                now[job] = better or now[job]
         if all(now[job] is before[job] for job in own):
             break
     return now
@@ -73,11 +85,7 @@ def neighbours(settings: Mapping[int, Settings]) -> dict[int, list[int]]:
 
     Numbers are next to each other by their size, words by the order in which the sweep first names them.
     """
-    rows = {job: [value for _, value in settings[job]] for job in sorted(settings)}
-    ranks = [
-        {value: rank for rank, value in enumerate(in_order(column))} for column in zip(*rows.values(), strict=True)
-    ]
-    places = {job: tuple(rank[value] for rank, value in zip(ranks, row, strict=True)) for job, row in rows.items()}
+    places = _places(settings)
     at = {place: job for job, place in places.items()}
     return {
         job: [
@@ -88,6 +96,15 @@ def neighbours(settings: Mapping[int, Settings]) -> dict[int, list[int]]:
         ]
         for job, place in places.items()
     }
+
+
+def _places(settings: Mapping[int, Settings]) -> dict[int, tuple[int, ...]]:
+    """Give for each job the ranks of its values."""
+    rows = {job: [value for _, value in settings[job]] for job in sorted(settings)}
+    ranks = [
+        {value: rank for rank, value in enumerate(in_order(column))} for column in zip(*rows.values(), strict=True)
+    ]
+    return {job: tuple(rank[value] for rank, value in zip(ranks, row, strict=True)) for job, row in rows.items()}
 
 
 def why_worse(design: Design, others: Mapping[int, Design]) -> str:
@@ -113,14 +130,14 @@ def why_worse(design: Design, others: Mapping[int, Design]) -> str:
     return f"worse than job {best} with fewer lenses: {reason}"
 
 
-def _begun_from(design: Design, others: Sequence[Design]) -> Design:
-    """Give the design, or a better one that a search from what others have come to leads to."""
+def _better_by(design: Design, others: Sequence[Design]) -> Design | None:
+    """Give a better design that a search from what others have come to leads to, None where it leads to none."""
     carried = [layout for other in others for layout in carried_over(design.problem, other)]
     if not carried:
-        return design
+        return None
     found = solve(design.problem, starts=0, patience=0, proof=0, known=[design.layout, *carried])
     if not _is_better(found, design):
-        return design
+        return None
     # The bound is the problem's, and its own search's history stays its own.
     origin = None if design.origin is None else replace(design.origin, known=len(carried))
     return replace(design, layout=found.layout, certificate=found.certificate, origin=origin)

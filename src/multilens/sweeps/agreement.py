@@ -13,6 +13,7 @@ import shutil
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from hashlib import sha256
+from itertools import starmap
 from pathlib import Path
 
 from multilens.design import Design
@@ -21,7 +22,7 @@ from multilens.fields import record, text
 from multilens.runs import CONFIG, DESIGN, LOG, write_design
 from multilens.storage import folder_written_whole
 from multilens.sweep_row import UNREADABLE, SweepRow
-from multilens.sweeps.agree import Listener, agree, unlike_neighbours, why_worse
+from multilens.sweeps.agree import Compute, Listener, agree, unlike_neighbours, why_worse
 from multilens.sweeps.job import ROW, Sealed, read_job, row_of, write_job
 from multilens.sweeps.locks import AGREEMENT, forget, held
 from multilens.sweeps.table import read_rows
@@ -33,14 +34,15 @@ MOVING = AGREEMENT
 SCHEMA, SCHEMA_VERSION = "multilens.agreement", 1
 
 
-def agree_in(folder: Path, listener: Listener = lambda turn, job: None) -> tuple[int, ...]:
+def agree_in(folder: Path, listener: Listener = lambda turn, job: None, compute: Compute = starmap) -> tuple[int, ...]:
     """Let the jobs of a sweep agree, replace the designs that became better, with their rows, and give these jobs.
 
     Of several processes one does it, and the others wait for what comes of it.
 
     Args:
         folder: of the sweep.
-        listener: told of the pass, from 1, and the job that is looked at.
+        listener: told of the pass, from 1, and the job that has been looked at.
+        compute: does the work of many jobs, here or elsewhere.
 
     Raises:
         ValueError: a file of a job is damaged; it is named.
@@ -48,7 +50,7 @@ def agree_in(folder: Path, listener: Listener = lambda turn, job: None) -> tuple
     """
     with held(folder, AGREEMENT):
         _end_moving(folder)
-        return _agree(folder, listener)
+        return _agree(folder, listener, compute)
 
 
 def end_moving(folder: Path) -> None:
@@ -72,7 +74,7 @@ def end_moving_of(job: Path) -> None:
     _move_job(job.parent / MOVING / job.name, job)
 
 
-def _agree(folder: Path, listener: Listener) -> tuple[int, ...]:
+def _agree(folder: Path, listener: Listener, compute: Compute) -> tuple[int, ...]:
     rows = [row for row in read_rows(folder) if row.status != UNREADABLE]
     settings = {row.job: row.settings for row in rows}
     jobs = {row.job: read_job(folder / str(row.job)) for row in rows if row.score is not None}
@@ -80,7 +82,7 @@ def _agree(folder: Path, listener: Listener) -> tuple[int, ...]:
     if (inputs, _outcome(folder, jobs)) == _agreed_before(folder):
         return tuple(job for job, sealed in jobs.items() if ALONE in sealed.checksums)
     own = {job: Design.load(folder / str(job) / _own_file(sealed)) for job, sealed in jobs.items()}
-    now = agree(own, settings, listener)
+    now = agree(own, settings, listener, compute)
     near = unlike_neighbours(own, settings)
     better = tuple(job for job in own if now[job] is not own[job])
     with folder_written_whole(folder / MOVING) as inside:
