@@ -17,6 +17,7 @@ from multilens import Lens
         ("aperture_radius", (2.0, 1.0), "aperture_radius must have least <= largest, got 2 > 1"),
         ("focus", (200.0, 100.0), "focus must have least <= largest, got 200 > 100"),
         ("clearance", -1.0, "clearance must be >= 0 mm and finite, got -1"),
+        ("disparity_noise", 1e-300, "disparity_noise must be from 1e-20 to 1e[+]20, got 1e-300"),
         ("disparity_noise", 0.0, "disparity_noise must be > 0 and finite, got 0"),
         ("blur_noise", -1.0, "blur_noise must be > 0 and finite, got -1"),
         ("tiers", 0, "tiers must be a whole number >= 1, got 0"),

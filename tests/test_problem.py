@@ -127,6 +127,8 @@ def test_focus_range_is_the_lens_own_or_that_of_the_depths():
         ({"depths": [300.0, -1.0]}, "depths must be"),
         ({"depths": [300.0, nan]}, "depths must be"),
         ({"depths": []}, "depths must be"),
+        ({"depths": [1e-300, 300.0]}, "nearest depth must be from 1e-20 to 1e[+]20, got 1e-300"),
+        ({"depths": [300.0, 1e300]}, "farthest depth must be from 1e-20 to 1e[+]20, got 1e[+]300"),
         ({"weights": [1.0]}, "weights must be 2"),
         ({"weights": [0.0, 0.0]}, "weights must be 2"),
         ({"weights": [1.0, -1.0]}, "weights must be 2"),

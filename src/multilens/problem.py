@@ -19,6 +19,7 @@ from multilens.layout import Layout
 from multilens.lens import Lens
 from multilens.metrics import MeanSquare, Metric
 from multilens.question import refuse_unless_lenses_and_gap
+from multilens.ranges import refuse_unless_positive
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,6 +75,8 @@ class Problem:
         refuse_unless_lenses_and_gap(lenses, gap)
         if depths.ndim != 1 or not (depths.isfinite() & (depths > 0)).all() or not len(depths):
             raise ValueError("depths must be one row of finite numbers > 0 mm")
+        refuse_unless_positive("nearest depth", depths.min().item())
+        refuse_unless_positive("farthest depth", depths.max().item())
         if weights.shape != depths.shape or not (weights.isfinite() & (weights >= 0)).all() or not weights.sum() > 0:
             raise ValueError(f"weights must be {len(depths)} finite numbers >= 0, not all 0, one for each depth")
         if not sum(len(cue.measurements(lenses)) for cue in cues):

@@ -2,15 +2,20 @@
 
 from math import isfinite
 
+LEAST, MOST = 1e-20, 1e20
+"""Of what is measured, whatever its unit: products of several squares of such numbers are still numbers."""
+
 
 def refuse_unless_positive(name: str, value: float) -> None:
-    """Refuse what is not a finite number above 0.
+    """Refuse what is not a finite number above 0, or so small or large that nothing could be computed with it.
 
     Raises:
-        ValueError: it is not.
+        ValueError: it is not, or it is.
     """
     if not isfinite(value) or value <= 0:
         raise ValueError(f"{name} must be > 0 and finite, got {value:g}")
+    if not LEAST <= value <= MOST:
+        raise ValueError(f"{name} must be from {LEAST:g} to {MOST:g}, got {value:g}")
 
 
 def refuse_unless_not_negative(name: str, value: float) -> None:

@@ -26,6 +26,7 @@ BAD = {
     "many lenses": (["lenses.count=65"], ["lenses.count", "got 65"]),
     "NaN": (["lenses.lens.focal_length=nan"], ["lenses.lens: focal_length", "nan"]),
     "infinity": (["depth.near=inf"], ["depth.near", "inf"]),
+    "nearer than can be computed": (["depth.near=1e-300"], ["depth.near", "1e-20", "got 1e-300"]),
     "far before near": (["depth.far=100"], ["depth.far", "depth.near = 200", "got 100"]),
     "no time": (["search.time_limit=0"], ["search.time_limit", "got 0"]),
     "no starts": (["search.starts=0"], ["search.starts", "got 0"]),

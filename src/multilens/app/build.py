@@ -32,6 +32,7 @@ from multilens.field_of_view import Field
 from multilens.geometry import shape
 from multilens.geometry.shape import Shape
 from multilens.lens import Lens
+from multilens.ranges import LEAST, MOST
 
 if TYPE_CHECKING:
     from multilens.problem import Problem
@@ -84,6 +85,9 @@ def check(config: Config) -> None:
         raise RefusedError(f"depth.near must be > 0 mm and finite, got {near:g}")
     if not (isfinite(far) and far > near):
         raise RefusedError(f"depth.far must be > depth.near = {near:g} mm and finite, got {far:g}")
+    for name, depth in (("near", near), ("far", far)):
+        if not LEAST <= depth <= MOST:
+            raise RefusedError(f"depth.{name} must be from {LEAST:g} to {MOST:g} mm, got {depth:g}")
     _refuse_unless_count("depth.count", config.depth.count, 2, MOST_DEPTHS)
     build_field(config.field_of_view)
     check_cues(config.cues)
