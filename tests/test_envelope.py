@@ -24,12 +24,12 @@ def summed(gain: Tensor, slope: Tensor, focus: Tensor, depths: Tensor, weights: 
 
 
 def mean_least_square(gain: Tensor, slope: Tensor, focus: Tensor, moments: DepthMoments) -> list[Tensor]:
-    """Ask with the batch, of any shape, first."""
+    """Ask with a batch of any shape."""
     k, batch = slope.shape[-1], gain.shape
     found = envelope.mean_least_square(
-        gain.flatten(), *(each.reshape(gain.numel(), k).T for each in (slope, focus)), moments
+        gain.flatten(), *(each.reshape(gain.numel(), k) for each in (slope, focus)), moments
     )
-    return [each.view(batch) if each.ndim == 1 else each.T.reshape(*batch, k) for each in found]
+    return [each.view(batch) if each.ndim == 1 else each.reshape(*batch, k) for each in found]
 
 
 def drawn(seed: int, lenses: int = 5, batch: tuple[int, ...] = (4,)) -> tuple[Tensor, Tensor, Tensor]:

@@ -39,6 +39,7 @@ class ClosedForm:
         if stereo:
             self.noise = stereo.noise(lenses, torch.float64).to(device)
             self.square_noise = self.noise.square().unsqueeze(-1)
+            self.rank = torch.arange(len(self.first), dtype=torch.int32, device=device).unsqueeze(-1)
         defocus = any(isinstance(cue, LensDefocus) for cue in cues)
         tiers = [(i, t) for i, lens in enumerate(lenses) for t in range(lens.tiers)] if defocus else []
         index = torch.tensor(tiers, dtype=torch.long, device=device).reshape(-1, 2)
@@ -66,34 +67,38 @@ class ClosedForm:
     def _of_few(
         self, position: Float[Tensor, "b n 2"], radius: Float[Tensor, "b n"], focus: Float[Tensor, "b n t"]
     ) -> tuple[Tensor, Tensor, Tensor, Tensor]:
-        """Give value and derivatives of some designs, with the batch last on the way so that every step runs along memory."""
-        position, radius = position.permute(2, 1, 0).contiguous(), radius.T.contiguous()
-        on_radius, on_focus = self._picked(radius, focus)
-        slope = self.slope_times_radius.unsqueeze(-1) / on_radius
+        """Give value and derivatives of some designs."""
+        on_radius, on_focus = (radius, focus[..., 0]) if self.plain else self._picked(radius, focus)
+        slope = self.slope_times_radius / on_radius
         gain, pair, way = self._best_pair(position)
         value, by_gain, by_slope, by_focus = mean_least_square(gain, slope, on_focus, self.moments)
         by_position = torch.zeros_like(position)
         if pair is not None:
             # d gain / d position of the first of the pair: -gain / distance^2 times the way between them.
-            force = way * (by_gain * gain / _squared_length(way))
-            by_position.scatter_(1, self.first[pair].expand_as(force), -force)
-            by_position.scatter_(1, self.second[pair].expand_as(force), force)
-        by_radius = (by_slope * slope).div_(on_radius).neg_()
-        if self.plain and focus.shape[-1] == 1:
-            return value, by_position.permute(2, 1, 0), by_radius.T, by_focus.T.unsqueeze(-1)
+            force = (way * (by_gain * gain / _squared_length(way))).T.unsqueeze(1)
+            by_position.scatter_(1, self.first[pair].view(-1, 1, 1).expand_as(force), -force)
+            by_position.scatter_(1, self.second[pair].view(-1, 1, 1).expand_as(force), force)
+        by_radius = by_slope.mul(slope).div_(on_radius).neg_()
         if not self.plain:
-            by_radius = torch.zeros_like(radius).index_add_(0, self.lens, by_radius)
+            by_radius = torch.zeros_like(radius).index_add_(1, self.lens, by_radius)
+        if self.plain and focus.shape[-1] == 1:
+            return value, by_position, by_radius, by_focus.unsqueeze(-1)
         spread = torch.zeros_like(focus)
-        spread[:, self.lens, self.tier] = by_focus.T
-        return value, by_position.permute(2, 1, 0), by_radius.T, spread
+        spread[:, self.lens, self.tier] = by_focus
+        return value, by_position, by_radius, spread
 
-    def _best_pair(self, position: Float[Tensor, "2 n b"]) -> tuple[Tensor, Tensor | None, Tensor]:
-        """Give the least gain, its pair [1, b] and the way from its second lens to its first [2, 1, b]."""
+    def _best_pair(self, position: Float[Tensor, "b n 2"]) -> tuple[Float[Tensor, " b"], Tensor | None, Tensor]:
+        """Give the least gain, its pair [b] and the way from its second lens to its first [2, b]."""
         if not len(self.first):
-            return position.new_full(position.shape[-1:], inf), None, position
-        way = position.index_select(1, self.first).sub_(position.index_select(1, self.second))
-        gain, pair = (self.square_noise / _squared_length(way)).min(0, keepdim=True)
-        return gain[0].sqrt(), pair, way.gather(1, pair.expand(2, 1, -1))
+            return position.new_full(position.shape[:1], inf), None, position
+        # The batch comes last, so that every step runs along memory.
+        place = position.permute(2, 1, 0).contiguous()
+        way = place.index_select(1, self.first).sub_(place.index_select(1, self.second))
+        square_gain = self.square_noise / _squared_length(way)
+        least = square_gain.amin(0)
+        # Multiplied, not searched: a search is a branch for each number.
+        pair = ((square_gain == least) * self.rank).amax(0).long()
+        return least.sqrt(), pair, way.gather(1, pair.expand(2, 1, -1)).squeeze(1)
 
     def gain_and_slope(self, layout: Layout) -> tuple[Float[Tensor, "*batch"], Float[Tensor, "*batch k"]]:
         """Give the error of the best pair over Z^2, infinite without pairs, and h of every V, its error over Z abs(Z - Zf)."""
@@ -104,11 +109,9 @@ class ClosedForm:
         distance = (position[..., self.first, :] - position[..., self.second, :]).norm(dim=-1)
         return (self.noise / distance.clamp(min=NANOMETRE)).amin(-1), slope
 
-    def _picked(self, radius: Float[Tensor, "n b"], focus: Float[Tensor, "b n t"]) -> tuple[Tensor, Tensor]:
-        """Give radius and focus of everything that measures by defocus, [k, b]."""
-        if self.plain:
-            return radius, focus[..., 0].T.contiguous()
-        return radius.index_select(0, self.lens), focus[:, self.lens, self.tier].T.contiguous()
+    def _picked(self, radius: Float[Tensor, "b n"], focus: Float[Tensor, "b n t"]) -> tuple[Tensor, Tensor]:
+        """Give radius and focus of everything that measures by defocus, [b, k]."""
+        return radius[:, self.lens], focus[:, self.lens, self.tier]
 
 
 def differentiable(closed_form: ClosedForm, layout: Layout) -> Float[Tensor, "*batch"]:
@@ -131,5 +134,5 @@ class _Score(Function):
         return each.unsqueeze(-1) * by_position, each * by_radius, each.unsqueeze(-1) * by_focus, None
 
 
-def _squared_length(way: Float[Tensor, "2 m b"]) -> Float[Tensor, "m b"]:
+def _squared_length(way: Float[Tensor, "2 ..."]) -> Float[Tensor, "..."]:
     return way[0].square().addcmul_(way[1], way[1]).clamp_(min=NANOMETRE**2)

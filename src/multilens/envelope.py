@@ -9,6 +9,7 @@ not depend on how many depths there are, and all pairs count as one.
 from functools import lru_cache
 from math import inf
 
+import numpy as np
 import torch
 from jaxtyping import Float, Int
 from torch import Tensor
@@ -33,18 +34,21 @@ class DepthMoments:
         powers = torch.stack([self.depths**power * weights[order] for power in (2, 3, 4)])
         self.sums = torch.cat([powers.new_zeros(3, 1), powers.cumsum(1)], dim=1)
         """Of w Z^2, w Z^3 and w Z^4 over all depths before each, [3, z + 1]."""
+        self.kind = torch.int16 if len(depths) < 2**15 else torch.int64
+        """Of counts of depths: the smaller, the faster."""
         near, span = self.depths[0], self.depths[-1] - self.depths[0]
         self.near, self.cells_per_depth = near, (CELLS - 1) / span
         self.one_a_cell = bool(span > 0 and self._cell(self.depths).bincount().max() <= 1)
         if self.one_a_cell:
             every = torch.arange(CELLS, device=self.depths.device)
-            self.before_cell = torch.searchsorted(self._cell(self.depths), every)
-            self.next_depth = torch.cat([self.depths, near.new_full((1,), inf)])[self.before_cell]
+            before = torch.searchsorted(self._cell(self.depths), every)
+            self.next_depth = torch.cat([self.depths, near.new_full((1,), inf)])[before]
+            self.before_cell = before.to(self.kind)
 
     def count_below(self, depth: Float[Tensor, "*batch"]) -> Int[Tensor, "*batch"]:
         """Give how many depths are less than each; by its cell, where none has two, for a binary search is a branch a step."""
         if not self.one_a_cell:
-            return torch.searchsorted(self.depths, depth)
+            return torch.searchsorted(self.depths, depth).to(self.kind)
         cell = self._cell(depth).flatten()
         beyond = self.next_depth.index_select(0, cell).view_as(depth) < depth
         return self.before_cell.index_select(0, cell).view_as(depth).add_(beyond)
@@ -65,14 +69,13 @@ class DepthMoments:
 
 
 def mean_least_square(
-    gain: Float[Tensor, " b"], slope: Float[Tensor, "k b"], focus: Float[Tensor, "k b"], moments: DepthMoments
-) -> tuple[Float[Tensor, " b"], Float[Tensor, " b"], Float[Tensor, "k b"], Float[Tensor, "k b"]]:
+    gain: Float[Tensor, " b"], slope: Float[Tensor, "b k"], focus: Float[Tensor, "b k"], moments: DepthMoments
+) -> tuple[Float[Tensor, " b"], Float[Tensor, " b"], Float[Tensor, "b k"], Float[Tensor, "b k"]]:
     """Give sum_z w_z min(gain Z^2, min_k slope_k Z abs(Z - focus_k))^2 and its derivatives, without autograd.
 
     A steep V beats a flatter one in an interval around its own focus, and everything flatter in the intersection of these
     intervals; where that holds for several, the steepest of them wins, and where for none, stereo. The derivatives are those
-    of the winners: at a tie those of one of them. The batch comes last, so that every step runs along memory, and the sums
-    are added up in the same order whatever the batch.
+    of the winners: at a tie those of one of them. The sums are added up in the same order whatever the batch.
 
     Args:
         gain: g of the best pair, 1/mm, >= 0; infinite where there is no stereo.
@@ -83,67 +86,85 @@ def mean_least_square(
     Returns:
         The mean of the squared error, mm^2, and its derivatives with respect to gain, slope and focus.
     """
-    if not len(slope):
+    if not slope.shape[-1]:
         fourth = moments.sums[2, -1]
         return gain.square() * fourth, 2 * gain * fourth, slope, focus
-    # Steepest first: then each has only those after it to beat.
-    order = slope.T.contiguous().argsort(descending=True, stable=True).T.contiguous()
-    slope, focus = slope.gather(0, order), focus.gather(0, order)
-    won = _won(*_winning_intervals(gain, slope, focus), moments)
-    second, third, fourth = won[:, :-1]
+    # Flattest first: then each has only those before it to beat.
+    rising, order = slope.sort()
+    # From here on the batch comes last, so that every step runs along memory.
+    curves = torch.stack([focus.gather(-1, order), rising, rising]).transpose(1, 2).contiguous()
+    focus, slope, lift = curves
+    lift.mul_(focus)
+    won = _won(_winning_intervals(gain, curves[1:]), moments)
+    second, third, fourth = won[:, 1:]
     drift = focus * second - third
     miss = (fourth + focus * (drift - third)).clamp_(min=0)
-    by_stereo = won[2, -1]
+    by_stereo = won[2, 0]
     # Without stereo its gain is infinite and it wins nowhere.
     gain = gain.masked_fill(by_stereo == 0, 0)
     by_gain, by_slope = gain * by_stereo, slope * miss
     value = (slope * by_slope).cumsum(0)[-1] + gain * by_gain
-    own = torch.stack([by_slope, slope.square() * drift]).mul_(2)
-    by_slope, by_focus = torch.empty_like(own).scatter_(1, order.expand_as(own), own)
+    own = torch.stack([by_slope, slope.square() * drift]).mul_(2).transpose(1, 2)
+    by_slope, by_focus = own.new_empty(own.shape).scatter_(-1, order.expand_as(own), own)
     return value, 2 * by_gain, by_slope, by_focus
 
 
-def _won(low: Float[Tensor, "k b"], high: Float[Tensor, "k b"], moments: DepthMoments) -> Float[Tensor, "3 k+1 b"]:
-    """Give the sums of w Z^2, w Z^3 and w Z^4 over the depths that each V wins, and the line last: the first of several wins."""
-    k, batch = low.shape
-    ends = moments.count_below(torch.cat([low, torch.maximum(low, high)]))
-    # The ends of the intervals, counted in depths, cut the range into 2 k + 1 pieces, each with one winner.
-    cuts = torch.nn.functional.pad(ends.T.contiguous().sort(dim=-1).values.T, (0, 0, 1, 0))
-    first, last = ends.view(2, k, 1, batch).unbind()
-    rank = torch.arange(k, 0, -1, dtype=torch.int16, device=low.device).view(k, 1, 1)
-    # Multiplied, not masked: a mask is a branch for each number.
-    winner = k - (((first <= cuts) & (cuts < last)).to(torch.int16).mul_(rank)).amax(0).long()
-    before = moments.sums.gather(1, cuts.reshape(1, -1).expand(3, -1)).view(3, -1, batch)
-    piece = torch.cat([before[:, 1:], moments.sums[:, -1:, None].expand(3, 1, batch)], dim=1).sub_(before)
-    return piece.new_zeros(3, k + 1, batch).scatter_add_(1, winner.expand_as(piece), piece)
-
-
-def _winning_intervals(
-    gain: Float[Tensor, " b"], slope: Float[Tensor, "k b"], focus: Float[Tensor, "k b"]
-) -> tuple[Float[Tensor, "k b"], Float[Tensor, "k b"]]:
-    """Give the interval in which each V lies below all that come after it, which are no steeper, and below the line."""
-    k, lift = len(slope), slope * focus
-    low, high = lift / (slope + gain), lift / (slope - gain).clamp_(min=TINY)
-    if k == 1:
-        return low, high
-    mine, other = _pairs_by_offset(k, slope.device)
-    mine_lift, other_lift = lift.index_select(0, mine), lift.index_select(0, other)
-    mine, other = slope.index_select(0, mine), slope.index_select(0, other)
-    between = (mine_lift + other_lift).div_(mine + other)
-    # Of equally steep ones the second crossing is at infinity.
-    beyond = mine_lift.sub_(other_lift).div_(mine.sub_(other).clamp_(min=TINY))
+def _winning_intervals(gain: Float[Tensor, " b"], curves: Float[Tensor, "2 k b"]) -> Float[Tensor, "2 k b"]:
+    """Give the interval in which each V, slope and lift, lies below the line and all Vs before it, which are no steeper."""
+    slope, lift = curves
     # The greatest low end and the least high end, with its sign turned, in one go.
-    ends = torch.stack([low, high.neg_()])
-    crossings = torch.stack([torch.minimum(between, beyond), torch.maximum(between, beyond).neg_()])
-    for stretch in crossings.split([*range(k - 1, 0, -1)], dim=1):
-        some = ends.narrow(1, 0, stretch.shape[1])
-        torch.maximum(some, stretch, out=some)
-    return ends[0], ends[1].neg()
+    ends = torch.stack([lift / (slope + gain), lift / (gain - slope).clamp_(max=-TINY)])
+    k = len(slope)
+    if k > 1:
+        for stretch in _crossings(curves).split([*range(k - 1, 0, -1)], dim=1):
+            some = ends.narrow(1, k - stretch.shape[1], stretch.shape[1])
+            torch.maximum(some, stretch, out=some)
+    torch.maximum(ends[0], ends[1].neg_(), out=ends[1])
+    return ends
+
+
+def _crossings(curves: Float[Tensor, "2 k b"]) -> Float[Tensor, "2 p b"]:
+    """Give where each two Vs cross, the nearer place and the farther with its sign turned, in the order of `_pairs_by_offset`."""
+    steeper, flatter = (curves.index_select(1, side) for side in _pairs_by_offset(curves.shape[1], curves.device))
+    total = steeper + flatter
+    between = total[1].div_(total[0])
+    # Of equally steep ones the second crossing is at infinity.
+    apart = steeper.sub_(flatter)
+    beyond = apart[1].div_(apart[0].clamp_(min=TINY))
+    crossings = torch.empty_like(total)
+    torch.minimum(between, beyond, out=crossings[0])
+    torch.maximum(between, beyond, out=crossings[1]).neg_()
+    return crossings
+
+
+def _won(ends: Float[Tensor, "2 k b"], moments: DepthMoments) -> Float[Tensor, "3 k+1 b"]:
+    """Give the sums of w Z^2, w Z^3 and w Z^4 over the depths that the line wins and each V: the last of several wins."""
+    _, k, batch = ends.shape
+    # The ends of the intervals, counted in depths, cut the range into pieces, each with one winner.
+    ends = moments.count_below(ends)
+    cuts = _sorted_rows(ends.flatten(0, 1).T.contiguous()).T.contiguous()
+    first, last = ends.unsqueeze(2)
+    rank = torch.arange(1, k + 1, dtype=torch.int16, device=ends.device).view(k, 1, 1)
+    # Multiplied, not masked: a mask is a branch for each number.
+    winner = (((first <= cuts) & (cuts < last)) * rank).amax(0).long()
+    after = torch.nn.functional.pad(cuts.long(), (0, 0, 0, 1), value=len(moments.depths))
+    before = moments.sums.gather(1, after.view(1, -1).expand(3, -1)).view(3, -1, batch)
+    piece = before.diff(dim=1).flatten(1)
+    place = winner.mul_(batch).add_(torch.arange(batch, device=ends.device)).view(1, -1).expand_as(piece)
+    won = piece.new_zeros(3, (k + 1) * batch).scatter_add_(1, place, piece).view(3, -1, batch)
+    # Before the first cut the line wins.
+    won[2, 0] += before[2, 0]
+    return won
+
+
+def _sorted_rows(numbers: Int[Tensor, "b m"]) -> Int[Tensor, "b m"]:
+    # NumPy sorts short rows some times faster than torch, where it can.
+    return torch.from_numpy(np.sort(numbers.numpy())) if numbers.device.type == "cpu" else numbers.sort().values
 
 
 @lru_cache(64)
 def _pairs_by_offset(k: int, device: torch.device) -> tuple[Int[Tensor, " p"], Int[Tensor, " p"]]:
-    """Give both ends of every pair of k, by how far they are apart: then the first ends of a stretch are 0, 1, 2, ..."""
-    pairs = [(i, i + offset) for offset in range(1, k) for i in range(k - offset)]
-    first, second = torch.tensor(pairs, dtype=torch.int64, device=device).reshape(-1, 2).unbind(-1)
-    return first, second
+    """Give the later and the earlier of every pair of k, by how far they are apart: then the later of a stretch are in a row."""
+    pairs = [(i + offset, i) for offset in range(1, k) for i in range(k - offset)]
+    later, earlier = torch.tensor(pairs, dtype=torch.int64, device=device).reshape(-1, 2).unbind(-1)
+    return later, earlier
