@@ -16,8 +16,8 @@ from multilens.sensor import Sensor
 SEEDS, LONGER_SEED = (0, 1, 2), 3
 """Of the searches that are timed, and of a longer one that shows how good they are; fixed before the first run."""
 
-PATIENCE = 48
-"""Of the longer search, four times the usual."""
+PATIENCE = 24
+"""Of the longer search, twice the usual."""
 
 SENSOR = Sensor(pixel_pitch_um=1.22, full_well=5060, read_noise=3, efficiency=0.5)
 """Of a phone's main camera: the numbers of the preset iphone_main."""

@@ -35,19 +35,21 @@ class Task:
         seed: of the run.
         began: when it began, by the monotonic clock, which all processes of a machine share, s.
         limit: how long it may take, s.
+        goal: score at which a method that would go on for ever may end, mm^2; 0 for none.
     """
 
     problem: ml.Problem
     seed: int
     began: float
     limit: float
+    goal: float = 0.0
 
 
 Method = Callable[[Task], list[Found]]
 
 
-class OutOfTimeError(Exception):
-    """The clock has stopped in the middle of a run."""
+class OverError(Exception):
+    """The clock has stopped in the middle of a run, or its goal is reached."""
 
 
 class Notebook:
@@ -69,14 +71,14 @@ class Notebook:
         return self.clock() - self.task.began
 
     @property
-    def out_of_time(self) -> bool:
+    def over(self) -> bool:
         """Whether the run must end."""
-        return self.seconds >= self.task.limit
+        return self.seconds >= self.task.limit or self.best <= self.task.goal
 
     def refuse_after_the_end(self) -> None:
-        """Raise an OutOfTimeError once the clock has stopped."""
-        if self.out_of_time:
-            raise OutOfTimeError
+        """Raise an OverError once the run must end."""
+        if self.over:
+            raise OverError
 
     @property
     def best(self) -> float:

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from math import inf
 from statistics import median
 
+from benchmark.methods import OURS
 from benchmark.referee import Judged
 
 GRACE = 0.25
@@ -12,6 +13,9 @@ GRACE = 0.25
 
 CLOSE, VERY_CLOSE = 0.01, 0.001
 """Parts of the best known score within which a layout counts as found."""
+
+TIE = 1e-6
+"""Part of the best known score that counts as equally good."""
 
 
 @dataclass(frozen=True)
@@ -61,6 +65,15 @@ def median_of(numbers: Sequence[float]) -> float:
 def is_settled(times: Sequence[float], count: int) -> bool:
     """Give whether the median over `count` runs is already infinite, whatever the runs that are still to come."""
     return times.count(inf) > count // 2
+
+
+def stopped_too_early(run: Run, best: float) -> bool:
+    """Give whether a run ended before its limit at a score that counts for less than the best known, mm^2.
+
+    The search ends by itself; a peer does so where it reaches what was the best known before, which the referee may see otherwise
+    and another run may have beaten since.
+    """
+    return run.method != OURS and not run.failure and run.seconds < run.limit and final(run, inf) > best * (1 + TIE)
 
 
 def excess(score: float, best: float) -> float:

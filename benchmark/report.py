@@ -7,9 +7,10 @@ from statistics import median
 from typing import Any
 
 from benchmark.best_known import Entry
-from benchmark.measures import CLOSE, VERY_CLOSE, Run, best_at, excess, final, median_of, time_to, times_shorter
+from benchmark.measures import CLOSE, TIE, VERY_CLOSE, Run, best_at, excess, final, median_of, time_to, times_shorter
 from benchmark.methods import OURS, PEERS, RIVAL
 from benchmark.problems import Case
+from benchmark.speed import BEST
 from multilens.table_text import markdown_text
 
 TIMES = (1.0, 3.0, 10.0)
@@ -21,8 +22,8 @@ LEAST_RATIO = {"N >= 8": 10.0, "N = 4 to 6": 3.0, "N = 2, 3": 1.0}
 LENSES = {"N >= 8": range(8, 100), "N = 4 to 6": range(4, 8), "N = 2, 3": range(1, 4)}
 """Numbers of lenses of each group."""
 
-WORST_GAP, TIE = 0.005, 1e-6
-"""Parts of the best known score: the gap that is allowed at the limit, and what counts as equally good."""
+WORST_GAP = 0.005
+"""Part of the best known score: the gap that is allowed at the limit."""
 
 CONVEX_GAP, MEDIAN_GAP, EAGER_RATIO, VERTEX_GROWTH, MOST_TIMES = 0.10, 0.20, 20.0, 0.10, 3.0
 
@@ -220,13 +221,14 @@ def _bound_aims(results: Results) -> list[list[str]]:
 
 def _speed_aims(results: Results) -> list[list[str]]:
     rows = []
-    if results.speed:
-        ratios = [row[-1] for row in results.speed[1:]]
+    for name, *_, ratio in (row for row in results.speed[1:] if row[2] == BEST):
+        equal = "; ".join(f"{row[2]}: {row[-1]:.3g}" for row in results.speed[1:] if row[0] == name and row[2] != BEST)
         rows.append(
             [
-                f"value and gradient at least {EAGER_RATIO:g} times the rate of plain eager torch (N = 8, 128 depths)",
-                "; ".join(f"{row[0]}, {row[2]} at once: {row[-1]:.3g}" for row in results.speed[1:]),
-                _verdict(min(ratios) >= EAGER_RATIO),
+                f"value and gradient at least {EAGER_RATIO:g} times the rate of plain eager torch, each at its best batch, "
+                f"{name} (N = 8, 128 depths)",
+                f"{ratio:.3g} (equal batches: {equal})",
+                _verdict(ratio >= EAGER_RATIO),
             ]
         )
     growth = [row for row in results.growth[1:] if row[0] == "outline vertices"]

@@ -6,7 +6,8 @@ python -m benchmark.run --only "4 disc" "8 blob"
 """
 
 import argparse
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from math import inf
 from pathlib import Path
 from time import monotonic
@@ -16,8 +17,8 @@ from benchmark.best_known import Entry, improved, load, save
 from benchmark.cues import cues_table
 from benchmark.curves import curves
 from benchmark.growth import growth_table
-from benchmark.lanes import CORES, Lanes, Outcome, warm_lanes
-from benchmark.measures import VERY_CLOSE, Run, is_settled, median_of, time_to
+from benchmark.lanes import CORES, Lanes, warm_lanes
+from benchmark.measures import TIE, VERY_CLOSE, Run, is_settled, median_of, stopped_too_early, time_to
 from benchmark.methods import OURS, PEERS, RIVAL
 from benchmark.problems import CASES, Case
 from benchmark.report import Bound, Results, aimed_ratio, summary, table
@@ -48,17 +49,14 @@ def main() -> None:
     whole = not options.quick and not options.only
     limit, seeds = (QUICK_LIMIT, SEEDS[:1]) if options.quick else (LIMIT, SEEDS)
     with warm_lanes() as lanes:
-        known = load()
-        runs = [run for case in chosen for run in _runs(lanes, case, seeds, limit, known.get(case.name))]
-        for case in chosen:
-            known = improved(
-                known, case, [(run.method, each) for run in runs if run.case == case.name for each in run.found]
-            )
+        cues = lanes.ask(cues_table) if whole else None
+        runs, known = _everything(lanes, chosen, seeds, limit)
         save(known)
-        bounds = {case.name: lanes.anywhere(0, _bound, case.name, known[case.name].score).result() for case in chosen}
-        made = (speed_table, growth_table, *([cues_table] if whole else []))
-        tables = [lanes.anywhere(0, each).result() for each in made]
-    results = Results(chosen, runs, known, limit, bounds, *tables)
+        asked = {case.name: lanes.ask(_bound, case.name, known[case.name].score) for case in chosen}
+        bounds = {name: each.result() for name, each in asked.items()}
+        # These come last, one by one, each on a machine that does nothing else.
+        tables = [lanes.ask(each).result() for each in (speed_table, growth_table)]
+        results = Results(chosen, runs, known, limit, bounds, *tables, *([cues.result()] if cues else []))
     folder = RESULTS if whole else QUICK_RESULTS
     write(results, folder)
     print(summary(results))
@@ -76,26 +74,63 @@ def write(results: Results, folder: Path) -> None:
         save_figures({"curves": curves(results)}, folder)
 
 
+def _everything(
+    lanes: Lanes, cases: Sequence[Case], seeds: Sequence[int], limit: float
+) -> tuple[list[Run], dict[str, Entry]]:
+    """Give all runs, and what is known with them."""
+    known = load()
+    with ThreadPoolExecutor(CORES) as threads:
+        # Two problems at a time: while one waits for its last run, the other has the core.
+        each = threads.map(lambda case: _runs(lanes, case, seeds, limit, known.get(case.name)), cases)
+        runs = [run for some in each for run in some]
+    known = _with(known, cases, runs)
+    while again := [at for at, run in enumerate(runs) if stopped_too_early(run, known[run.case].score)]:
+        waiting = {
+            at: _begun(lanes, runs[at].case, runs[at].method, runs[at].seed, runs[at].limit, 0.0) for at in again
+        }
+        runs = [waiting[at]() if at in waiting else run for at, run in enumerate(runs)]
+        known = _with(known, cases, runs)
+    return runs, known
+
+
+def _with(known: Mapping[str, Entry], cases: Sequence[Case], runs: Sequence[Run]) -> dict[str, Entry]:
+    known = dict(known)
+    for case in cases:
+        known = improved(
+            known, case, [(run.method, each) for run in runs if run.case == case.name for each in run.found]
+        )
+    return known
+
+
 def _runs(lanes: Lanes, case: Case, seeds: Sequence[int], limit: float, known: Entry | None) -> list[Run]:
-    runs: list[Run] = []
+    goal = known.score * (1 + TIE / 2) if known else 0.0
 
-    def note(name: str, seed: int, outcome: Outcome, limit: float = limit) -> None:
-        runs.append(Run(case.name, name, seed, limit, outcome.seconds, tuple(outcome.judged), outcome.failure))
-        _tell(runs[-1])
+    def begin(name: str, some: Sequence[int], limit: float = limit) -> list[Callable[[], Run]]:
+        return [_begun(lanes, case.name, name, seed, limit, goal) for seed in some]
 
-    for seed in seeds:
-        note(OURS, seed, lanes.alone(OURS, case.name, seed, limit))
+    ours, others = begin(OURS, seeds), [begin(name, seeds[:1]) for name in PEERS if name != RIVAL]
+    runs = [run() for run in ours]
     longer = _time_of_the_rival(case, runs, limit, known)
+    # Once most of the rival's runs have missed their longer limit its time is known to be beyond.
+    most = len(seeds) // 2 + 1
+    theirs = [run() for run in begin(RIVAL, seeds[:most], longer)]
     target = _target(runs, known)
-    for seed in seeds:
-        theirs = [time_to(run, target) for run in runs if run.method == RIVAL]
-        allowed = limit if is_settled(theirs, len(seeds)) else longer
-        note(RIVAL, seed, lanes.alone(RIVAL, case.name, seed, allowed), allowed)
-    others = [name for name in PEERS if name != RIVAL]
-    for names in (others[at : at + CORES] for at in range(0, len(others), CORES)):
-        for name, outcome in zip(names, lanes.side_by_side(names, case.name, seeds[0], limit), strict=True):
-            note(name, seeds[0], outcome)
-    return runs
+    missed = is_settled([time_to(run, target) for run in theirs], len(seeds))
+    last = begin(RIVAL, seeds[most:], limit if missed else longer)
+    return [*runs, *theirs, *(run() for run in last), *(run() for some in others for run in some)]
+
+
+def _begun(lanes: Lanes, case: str, name: str, seed: int, limit: float, goal: float) -> Callable[[], Run]:
+    """Have a run begin when a core is free, and give what waits for it."""
+    wait = lanes.run(name, case, seed, limit, goal)
+
+    def run() -> Run:
+        outcome = wait()
+        done = Run(case, name, seed, limit, outcome.seconds, tuple(outcome.judged), outcome.failure)
+        _tell(done)
+        return done
+
+    return run
 
 
 def _time_of_the_rival(case: Case, ours: Sequence[Run], limit: float, known: Entry | None) -> float:
@@ -120,7 +155,9 @@ def _bound(case: str, best: float) -> Bound:
 
 def _tell(run: Run) -> None:
     last = f"{run.found[-1].score:.7g} mm^2 at {run.found[-1].seconds:.2f} s" if run.found else "nothing"
-    print(f"{run.case:22} {run.method:24} seed {run.seed}: {last}, took {run.seconds:.2f} s {run.failure}", flush=True)
+    # In one piece, for two threads tell.
+    line = f"{run.case:22} {run.method:24} seed {run.seed}: {last}, took {run.seconds:.2f} s {run.failure}\n"
+    print(line, end="", flush=True)
 
 
 def _names() -> list[str]:

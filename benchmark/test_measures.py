@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from benchmark.curves import median_curve
-from benchmark.measures import Run, best_at, is_settled, median_of, time_to, times_shorter
+from benchmark.measures import Run, best_at, is_settled, median_of, stopped_too_early, time_to, times_shorter
 from benchmark.referee import Judged
 
 
@@ -49,3 +49,19 @@ def test_the_median_curve_begins_when_most_runs_have_something() -> None:
 )
 def test_the_median_of_three_is_settled_once_two_never_got_there(times: list[float], settled: bool) -> None:
     assert is_settled(times, 3) == settled
+
+
+@pytest.mark.parametrize(
+    ("method", "seconds", "score", "early"),
+    [
+        ("SLSQP", 3.0, 1.0, False),
+        ("SLSQP", 3.0, 1.01, True),
+        ("SLSQP", 10.0, 1.01, False),
+        ("multilens", 3.0, 1.01, False),
+    ],
+)
+def test_a_peer_that_stopped_short_of_what_is_the_best_known_now_stopped_too_early(
+    method: str, seconds: float, score: float, early: bool
+) -> None:
+    ended = Run("a", method, 0, 10.0, seconds, (Judged(1.0, score, []),))
+    assert stopped_too_early(ended, 1.0) == early

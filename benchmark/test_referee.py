@@ -1,6 +1,6 @@
 import pytest
 
-from benchmark.found import Found, Notebook, OutOfTimeError, Task
+from benchmark.found import Found, Notebook, OverError, Task
 from benchmark.peers.model import Model
 from benchmark.problems import CASES
 from benchmark.referee import judge
@@ -45,5 +45,14 @@ def test_a_notebook_keeps_steps_worth_telling_and_the_last() -> None:
 
 def test_a_notebook_stops_a_run_at_the_limit() -> None:
     notebook = Notebook(Task(PROBLEM, 0, 5.0, 10.0), lambda: 15.0)
-    with pytest.raises(OutOfTimeError):
+    with pytest.raises(OverError):
         notebook.refuse_after_the_end()
+
+
+def test_a_notebook_stops_a_run_at_its_goal() -> None:
+    notebook = Notebook(Task(PROBLEM, 0, 0.0, 10.0, goal=2.0), lambda: 1.0)
+    stopped, model = [], Model(PROBLEM)
+    for score in (3.0, 2.0):
+        notebook.tell(score, lambda: model.layout(model.upper / 2))
+        stopped.append(notebook.over)
+    assert stopped == [False, True]

@@ -8,6 +8,7 @@ from benchmark.methods import OURS, RIVAL
 from benchmark.problems import CASES
 from benchmark.referee import Judged
 from benchmark.report import Bound, Results, summary, table
+from benchmark.speed import BEST
 
 CASE = next(case for case in CASES if case.name == "8 rectangle")
 
@@ -18,7 +19,9 @@ Made = Callable[..., Results]
 def made() -> Made:
     """Results of one problem with the best known score 1: ours and the rival's time to it in s, None for never."""
 
-    def results(ours: float | None, theirs: float | None, failure: str = "", bound: float | None = None) -> Results:
+    def results(
+        ours: float | None, theirs: float | None, failure: str = "", bound: float | None = None, ratio: float = 25.0
+    ) -> Results:
         def run(method: str, seed: int, seconds: float | None) -> Run:
             found = [Judged(0.1, 2.0, [])] + ([] if seconds is None else [Judged(seconds, 1.0, [])])
             return Run(CASE.name, method, seed, 10.0, 10.0, tuple(found))
@@ -28,7 +31,7 @@ def made() -> Made:
             runs.append(Run(CASE.name, "CMA-ES", 0, 10.0, 0.0, (), failure))
         best = {CASE.name: Entry("", 1.0, "somebody", [])}
         bounds = {CASE.name: Bound(bound, "for the test", 0.0)}
-        speed = [["type", "device", "batch", "ratio"], ["float32", "cpu", 256, 25.0]]
+        speed = [["type", "device", "batch", "ratio"], ["float64", "cpu", 256, 50.0], ["float64", "cpu", BEST, ratio]]
         growth = [["grows", "to", "us"], ["outline vertices", 20, 2.0], ["outline vertices", 2000, 2.1]]
         cues = [
             ["cues", "time", "times", "above", "worst"],
@@ -84,6 +87,11 @@ def test_the_best_score_of_all_is_a_pass(made: Made, ours: float | None, verdict
 @pytest.mark.parametrize(("bound", "verdict"), [(0.85, "pass"), (0.7, "falls short"), (None, "falls short")])
 def test_the_certified_gap_is_held_against_its_aim(made: Made, bound: float | None, verdict: str) -> None:
     assert row(summary(made(0.5, 5.0, bound=bound)), "median over the problems").endswith(f"{verdict} |")
+
+
+@pytest.mark.parametrize(("ratio", "verdict"), [(25.0, "pass"), (15.0, "falls short")])
+def test_the_rate_is_held_against_its_aim_each_at_its_best_batch(made: Made, ratio: float, verdict: str) -> None:
+    assert row(summary(made(0.5, 5.0, ratio=ratio)), "value and gradient").endswith(f"{verdict} |")
 
 
 def test_the_time_of_other_cues_is_held_against_its_aim(made: Made) -> None:

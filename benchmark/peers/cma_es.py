@@ -3,7 +3,7 @@
 import cma
 import numpy as np
 
-from benchmark.found import Found, OutOfTimeError, Task
+from benchmark.found import Found, OverError, Task
 from benchmark.peers.priced import Priced
 
 FIRST_STEP = 0.2
@@ -25,5 +25,5 @@ def cma_es(task: Task) -> list[Found]:
                 bipop=True,
                 parallel_objective=lambda x, *_: price(np.asarray(x)).tolist(),
             )
-    except OutOfTimeError:
+    except OverError:
         return price.notebook.all()

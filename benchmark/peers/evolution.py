@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.optimize import differential_evolution
 
-from benchmark.found import Found, OutOfTimeError, Task
+from benchmark.found import Found, OverError, Task
 from benchmark.peers.priced import Priced
 
 POPULATION = 2
@@ -31,5 +31,5 @@ def evolution(task: Task) -> list[Found]:
                 updating="deferred",
                 rng=price.random,
             )
-    except OutOfTimeError:
+    except OverError:
         return price.notebook.all()

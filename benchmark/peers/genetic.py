@@ -7,7 +7,7 @@ from pymoo.algorithms.soo.nonconvex.ga import GA
 from pymoo.core.problem import Problem as PymooProblem
 from pymoo.optimize import minimize
 
-from benchmark.found import Found, OutOfTimeError, Task
+from benchmark.found import Found, OverError, Task
 from benchmark.peers.priced import Priced
 
 POPULATION = 60
@@ -31,6 +31,6 @@ def genetic(task: Task) -> list[Found]:
     seed = int(price.random.integers(2**31))
     # pymoo takes an array for its first population, as its documentation says; the types that are inferred do not.
     method = GA(POPULATION, sampling=price.starts(POPULATION))  # pyright: ignore[reportArgumentType]
-    with suppress(OutOfTimeError):
+    with suppress(OverError):
         minimize(_Question(price), method, ("n_gen", 10**9), seed=seed)
     return price.notebook.all()

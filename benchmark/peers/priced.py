@@ -38,7 +38,7 @@ class Priced:
         """Give the logarithm of the score and the missing room as a part of the back's size.
 
         Raises:
-            OutOfTimeError: the clock has stopped.
+            OverError: the run must end.
         """
         self.notebook.refuse_after_the_end()
         v = np.zeros((len(x), len(self.model.upper)))

@@ -6,7 +6,7 @@ Reference:
 
 import numpy as np
 
-from benchmark.found import Found, OutOfTimeError, Task
+from benchmark.found import Found, OverError, Task
 from benchmark.peers.priced import Priced
 
 TRIED = 64
@@ -36,5 +36,5 @@ def random_search(task: Task) -> list[Found]:
                 since += 1
                 if prices.min() < best:
                     x, best, since = tried[prices.argmin()], prices.min(), 0
-    except OutOfTimeError:
+    except OverError:
         return price.notebook.all()

@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Float
 from scipy.optimize import minimize
 
-from benchmark.found import Found, Notebook, OutOfTimeError, Task
+from benchmark.found import Found, Notebook, OverError, Task
 from benchmark.peers.model import MARGIN, Model
 
 ROUGH, FINE = 1e-7, 1e-11
@@ -116,7 +116,7 @@ class Slsqp:
             notebook: whose clock ends the run.
 
         Raises:
-            OutOfTimeError: the clock has stopped.
+            OverError: the run must end.
         """
 
         def objective(v: np.ndarray) -> tuple[float, np.ndarray]:
@@ -154,8 +154,8 @@ def slsqp(task: Task) -> list[Found]:
         notebook.tell(score, lambda: model.layout(settled[0]))
         return True
 
-    with suppress(OutOfTimeError):
-        while not notebook.out_of_time:
+    with suppress(OverError):
+        while not notebook.over:
             for start in model.random_starts(random, STARTS_AT_ONCE):
                 end = solver.run(start, ROUGH, notebook)
                 if tell(end):

@@ -3,7 +3,7 @@ from time import monotonic
 import numpy as np
 import pytest
 
-from benchmark.found import OutOfTimeError, Task
+from benchmark.found import OverError, Task
 from benchmark.methods import PEERS, method
 from benchmark.peers.priced import Priced
 from benchmark.problems import CASES
@@ -30,7 +30,7 @@ def test_missing_room_costs() -> None:
 
 def test_after_the_end_nothing_is_priced() -> None:
     price = Priced(Task(PROBLEM, 0, monotonic() - 1, 0.5))
-    with pytest.raises(OutOfTimeError):
+    with pytest.raises(OverError):
         price(price.starts(1))
 
 
