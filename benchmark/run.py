@@ -22,7 +22,7 @@ from benchmark.measures import TIE, VERY_CLOSE, Run, is_settled, median_of, stop
 from benchmark.methods import OURS, PEERS, RIVAL
 from benchmark.problems import CASES, Case
 from benchmark.report import Bound, Results, aimed_ratio, summary, table
-from benchmark.speed import speed_table
+from benchmark.speed import BATCHES, QUICK_BATCHES, speed_table
 from multilens.plot.figures import save_figures
 from multilens.plot.style import style
 from multilens.storage import write_whole
@@ -44,7 +44,7 @@ QUICK_RESULTS = Path(__file__).parents[1] / "runs" / "benchmark"
 
 def main() -> None:
     """Run what the command line asks for."""
-    options = _options()
+    options, began = _options(), monotonic()
     chosen = [case for case in CASES if (not options.quick or case.quick) and case.name in (options.only or _names())]
     whole = not options.quick and not options.only
     limit, seeds = (QUICK_LIMIT, SEEDS[:1]) if options.quick else (LIMIT, SEEDS)
@@ -55,12 +55,13 @@ def main() -> None:
         asked = {case.name: lanes.ask(_bound, case.name, known[case.name].score) for case in chosen}
         bounds = {name: each.result() for name, each in asked.items()}
         # These come last, one by one, each on a machine that does nothing else.
-        tables = [lanes.ask(each).result() for each in (speed_table, growth_table)]
+        batches = QUICK_BATCHES if options.quick else BATCHES
+        tables = [lanes.ask(speed_table, ("cpu",), batches).result(), lanes.ask(growth_table).result()]
         results = Results(chosen, runs, known, limit, bounds, *tables, *([cues.result()] if cues else []))
     folder = RESULTS if whole else QUICK_RESULTS
     write(results, folder)
     print(summary(results))
-    print(f"written to {folder}")
+    print(f"written to {folder}, after {(monotonic() - began) / 60:.1f} minutes")
 
 
 def write(results: Results, folder: Path) -> None:

@@ -1,6 +1,6 @@
 """How many designs a second are valued with their gradient, against the same objective written plainly in eager torch."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from itertools import product
 from statistics import median
 from time import perf_counter
@@ -18,6 +18,8 @@ BATCH, LENSES, DEPTHS = 256, 8, 128
 BATCHES = (32, 64, 256, 1024, 4096)
 """Designs at once. The plain one is at its best with 32 or 64, whose errors at all depths stay in the processor's cache, the
 library with thousands, where calling torch costs little beside what it computes."""
+
+QUICK_BATCHES = (32, 64, 1024)
 
 BEST = "best of each"
 
@@ -77,7 +79,7 @@ def value_and_gradient(score: Callable[[ml.Layout], Tensor], layout: ml.Layout) 
     return torch.autograd.grad(score(layout).sum(), (layout.position, layout.aperture_radius, layout.focus))
 
 
-def speed_table(devices: tuple[str, ...] = ("cpu",), batches: tuple[int, ...] = BATCHES) -> list[list[Any]]:
+def speed_table(devices: Sequence[str] = ("cpu",), batches: Sequence[int] = BATCHES) -> list[list[Any]]:
     """Give a row for each type, device and batch, head first: designs a second of the library, of plain torch, and their ratio.
 
     The last row of each type and device has the best of all batches of the one against the best of the other.
