@@ -35,7 +35,8 @@ class ClosedForm:
     def __init__(self, lenses: Sequence[Lens], cues: Sequence[Cue], moments: DepthMoments) -> None:
         self.moments, device = moments, moments.depths.device
         stereo = next((cue for cue in cues if isinstance(cue, PairStereo)), None)
-        self.first, self.second = pair_indices(len(lenses) if stereo else 1, device)
+        self.pairs = pair_indices(len(lenses) if stereo else 1, device)
+        self.first, self.second = self.pairs
         if stereo:
             self.noise = stereo.noise(lenses, torch.float64).to(device)
             self.square_noise = self.noise.square().unsqueeze(-1)
@@ -75,9 +76,9 @@ class ClosedForm:
         by_position = torch.zeros_like(position)
         if pair is not None:
             # d gain / d position of the first of the pair: -gain / distance^2 times the way between them.
-            force = (way * (by_gain * gain / _squared_length(way))).T.unsqueeze(1)
-            by_position.scatter_(1, self.first[pair].view(-1, 1, 1).expand_as(force), -force)
-            by_position.scatter_(1, self.second[pair].view(-1, 1, 1).expand_as(force), force)
+            force = (way * (by_gain * gain / _squared_length(way))).T
+            of_both = self.pairs.index_select(1, pair).T.unsqueeze(-1).expand(-1, -1, 2)
+            by_position.scatter_(1, of_both, torch.stack([-force, force], dim=1))
         by_radius = by_slope.mul(slope).div_(on_radius).neg_()
         if not self.plain:
             by_radius = torch.zeros_like(radius).index_add_(1, self.lens, by_radius)

@@ -131,10 +131,10 @@ def _crossings(curves: Float[Tensor, "2 k b"]) -> Float[Tensor, "2 p b"]:
     # Of equally steep ones the second crossing is at infinity.
     apart = steeper.sub_(flatter)
     beyond = apart[1].div_(apart[0].clamp_(min=TINY))
-    crossings = torch.empty_like(total)
-    torch.minimum(between, beyond, out=crossings[0])
-    torch.maximum(between, beyond, out=crossings[1]).neg_()
-    return crossings
+    # What is not needed any more takes the result: memory that is in the cache already.
+    torch.minimum(between, beyond, out=flatter[0])
+    torch.maximum(between, beyond, out=flatter[1]).neg_()
+    return flatter
 
 
 def _won(ends: Float[Tensor, "2 k b"], moments: DepthMoments) -> Float[Tensor, "3 k+1 b"]:
