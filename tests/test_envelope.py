@@ -121,6 +121,10 @@ def test_as_the_sum_where_depths_repeat() -> None:
     assert_both_agree(*drawn(5), torch.cat([depths, depths[:9], depths[:9]]), torch.cat([weights, weights[:18]]))
 
 
+def test_as_the_sum_where_depths_are_more_than_16_bits_count() -> None:
+    assert_both_agree(*drawn(5), *depths_of(5, 2**15 + 1))
+
+
 def test_stereo_alone_is_the_sum_over_depths() -> None:
     gain, depths, weights = drawn(0)[0], *depths_of(0)
     nothing = gain.new_empty(4, 0)
