@@ -144,16 +144,17 @@ def _won(ends: Float[Tensor, "2 k b"], moments: DepthMoments) -> Float[Tensor, "
     ends = moments.count_below(ends)
     cuts = _sorted_rows(ends.flatten(0, 1).T.contiguous()).T.contiguous()
     first, last = ends.unsqueeze(2)
-    rank = torch.arange(1, k + 1, dtype=torch.int16, device=ends.device).view(k, 1, 1)
-    # Multiplied, not masked: a mask is a branch for each number.
-    winner = (((first <= cuts) & (cuts < last)) * rank).amax(0).long()
+    rank = torch.arange(1, k + 1, dtype=ends.dtype, device=ends.device).view(k, 1, 1)
+    # Counted, not compared: 1 from the first cut of a V to before its last, 0 elsewhere. Comparisons and masks are slow.
+    within = torch.minimum(cuts - (first - 1), last - cuts).clamp_(0, 1)
+    winner = within.mul_(rank).amax(0).long()
     after = torch.nn.functional.pad(cuts.long(), (0, 0, 0, 1), value=len(moments.depths))
     before = moments.sums.gather(1, after.view(1, -1).expand(3, -1)).view(3, -1, batch)
     piece = before.diff(dim=1).flatten(1)
     place = winner.mul_(batch).add_(torch.arange(batch, device=ends.device)).view(1, -1).expand_as(piece)
     won = piece.new_zeros(3, (k + 1) * batch).scatter_add_(1, place, piece).view(3, -1, batch)
     # Before the first cut the line wins.
-    won[2, 0] += before[2, 0]
+    won[2, 0].add_(before[2, 0])
     return won
 
 
