@@ -19,7 +19,7 @@ BATCHES = (32, 64, 256, 1024, 4096)
 """Designs at once. The plain one is at its best with 32 or 64, whose errors at all depths stay in the processor's cache, the
 library with thousands, where calling torch costs little beside what it computes."""
 
-QUICK_BATCHES = (32, 64, 1024)
+QUICK_BATCHES = (32, 64, 2048)
 
 BEST = "best of each"
 
