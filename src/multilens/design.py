@@ -1,6 +1,7 @@
 """A design: one layout that answers a question, with its proof and its origin."""
 
 from dataclasses import dataclass
+from functools import cached_property
 from math import isclose, nan, sqrt
 from pathlib import Path
 from typing import Any
@@ -87,12 +88,12 @@ class Design:
         """Whether the layout keeps every constraint, exactly."""
         return self.certificate.feasible if self.status == GIVEN else self.status != INFEASIBLE
 
-    @property
+    @cached_property
     def score(self) -> float:
         """Exact score, in the metric's `score_unit`, mm^2 as it is (for a score of one's own, in its unit); NaN if infeasible."""
         return self.problem.score(self.layout).item() if self.status != INFEASIBLE else nan
 
-    @property
+    @cached_property
     def rmse(self) -> float:
         """Root-mean-square error of depth, mm, whichever metric was asked for; NaN if infeasible.
 
@@ -108,7 +109,7 @@ class Design:
         metric = self.problem.metric
         return self.score if metric is None or self.status == INFEASIBLE else metric.figure(self.score)
 
-    @property
+    @cached_property
     def measured(self) -> float:
         """Share of the depths, by weight, at which anything measures, 1 unless cues may fail; NaN if infeasible or no Problem."""
         if not isinstance(drawn := as_drawn(self.problem), Problem) or self.status == INFEASIBLE:

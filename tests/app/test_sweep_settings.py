@@ -4,9 +4,12 @@ import json
 from pathlib import Path
 
 import pytest
+from hydra.core.utils import JobReturn
+from omegaconf import DictConfig
 
 from multilens.app.command import run_command
 from multilens.app.search import NothingFoundError
+from multilens.app.sweep import SweepTable
 
 
 @pytest.fixture(autouse=True)
@@ -73,3 +76,9 @@ def test_a_folder_may_be_called_anything(monkeypatch: pytest.MonkeyPatch) -> Non
     monkeypatch.setattr("sys.argv", ["multilens", *command])
     assert run_command(command) == 3
     assert (Path(name) / "1" / "row.json").is_file()
+
+
+def test_what_hydra_remembers_of_a_job_is_not_its_configuration() -> None:
+    done = JobReturn(overrides=["lenses.count=2"], cfg=DictConfig({"lenses": {"count": 2}}), hydra_cfg=DictConfig({}))
+    SweepTable().on_job_end(DictConfig({}), done)
+    assert (done.overrides, done.cfg, done.hydra_cfg) == (["lenses.count=2"], None, None)

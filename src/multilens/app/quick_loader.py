@@ -17,6 +17,8 @@ from hydra.types import RunMode
 from omegaconf import DictConfig, OmegaConf
 from omegaconf.errors import OmegaConfBaseException
 
+from multilens.app.job_config import with_common_parts
+
 MOST_BASES = 64
 """Choices of files of which the composed configuration is remembered; 30 kB each."""
 
@@ -67,6 +69,10 @@ class QuickLoader(ConfigLoaderImpl):
             task, naming.exclude_keys, naming.item_sep, naming.kv_sep
         )
         return config
+
+    def load_sweep_config(self, master_config: DictConfig, sweep_overrides: list[str]) -> DictConfig:
+        """Compose the configuration of a job; see Hydra's loader."""
+        return with_common_parts(super().load_sweep_config(master_config, sweep_overrides))
 
     def _is_value(self, override: Override) -> bool:
         """Whether an override sets a value of ours, rather than choose a file or set something of Hydra's."""

@@ -10,7 +10,6 @@ from omegaconf import DictConfig
 
 from multilens.app import build
 from multilens.app.search import NothingFoundError, search
-from multilens.app.terminal import progress_bar
 from multilens.app.tolerance import build_tolerance
 
 if TYPE_CHECKING:
@@ -43,6 +42,9 @@ def searched(config: DictConfig, visible: bool) -> Searched:
         RefusedError: it cannot be run.
         NothingFoundError: nothing feasible was found, or no start stayed healthy.
     """
+    # It brings torch, which a sweep does not need before it has a job to compute, and which no signal may cut short.
+    from multilens.app.terminal import progress_bar
+
     given = build.typed(config)
     build.check(given)
     problem, began, stages = build.build_question(given), monotonic(), []

@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from hydra.core.global_hydra import GlobalHydra
+from hydra.core.utils import JobReturn
 from hydra.experimental.callback import Callback
 from omegaconf import DictConfig
 
@@ -26,6 +27,10 @@ class SweepTable(Callback):
         hydra = GlobalHydra.instance().hydra
         assert hydra is not None
         quicken(hydra)
+
+    def on_job_end(self, config: DictConfig, job_return: JobReturn, **kwargs: Any) -> None:
+        """Let go of the two copies of a job's configuration, of which Hydra would keep every job's to the end of the sweep."""
+        job_return.cfg = job_return.hydra_cfg = None
 
     def on_multirun_end(self, config: DictConfig, **kwargs: Any) -> None:
         """Wait for what others compute, let neighbours agree, write the table of the jobs' folders, draw its pictures, print it.

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from omegaconf import DictConfig, OmegaConf
 
 from multilens.app.ending import tell
-from multilens.app.loading import load_torch
+from multilens.app.loading import keep_what_is_loaded, load_torch
 from multilens.app.plain import plain, yaml_text
 from multilens.app.refusal import RefusedError, one_line
 from multilens.app.search import NothingFoundError
@@ -53,6 +53,7 @@ def run_sweep_job(config: DictConfig, folder: Path, overrides: Sequence[str], vi
             print(f"{from_here(folder)}: somebody else is computing it", flush=True)
             return
     if computed:
+        keep_what_is_loaded()
         write_tables_now_and_then(folder.parent)
 
 
