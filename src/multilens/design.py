@@ -16,6 +16,7 @@ from multilens.fields import choice, number, record
 from multilens.geometry.pairs import pair_distance, pair_indices
 from multilens.layout import Layout
 from multilens.layout_table import f_numbers, foci, layout_lines
+from multilens.metrics import MeanSquare
 from multilens.problem import Problem
 from multilens.question import Question
 from multilens.records import (
@@ -99,8 +100,10 @@ class Design:
 
         Of a score of one's own it is the root, NaN if that is negative.
         """
-        if isinstance(drawn := as_drawn(self.problem), Problem) and self.status != INFEASIBLE:
-            return sqrt(drawn.mean_square(self.layout).item())
+        drawn = as_drawn(self.problem)
+        if isinstance(drawn, Problem) and self.status != INFEASIBLE:
+            is_score = drawn is self.problem and isinstance(drawn.metric, MeanSquare)
+            return sqrt(self.score if is_score else drawn.mean_square(self.layout).item())
         return sqrt(self.score) if self.score >= 0 else nan
 
     @property

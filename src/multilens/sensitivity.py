@@ -188,12 +188,10 @@ def _change(
     slope: float,
     figure: float,
 ) -> Change:
-    def growth(size: float) -> float:
-        with torch.no_grad():
-            return problem.metric.figure(problem.score(step(layout, lens, size)).max().item()) - figure
-
-    one_sided = growth(SMALL) / SMALL
-    worst = growth(1.0)
+    with torch.no_grad():
+        scores = problem.score(_both(*(step(layout, lens, size) for size in (SMALL, 1.0)))).amax(-1)
+    small, worst = (problem.metric.figure(score) - figure for score in scores.tolist())
+    one_sided = small / SMALL
     return Change(
         worst if worst > ROUNDING * figure else 0.0,
         slope,
@@ -219,6 +217,11 @@ def _refocused(layout: Layout, lens: int, size: float) -> Layout:
     off = size * FOCUS_DIOPTRE / 1000 * torch.tensor([[-1.0], [1.0]], dtype=torch.float64)
     focus[:, lens] = refocused(focus[:, lens], off)
     return _of_like(layout, focus=focus)
+
+
+def _both(first: Layout, second: Layout) -> Layout:
+    """Give two batches as one, [2, b]."""
+    return Layout(*(torch.stack(parts) for parts in zip(vars(first).values(), vars(second).values(), strict=True)))
 
 
 def _of_like(layout: Layout, **changed: Tensor) -> Layout:
