@@ -1,6 +1,11 @@
+from argparse import Namespace
+
 import pytest
+from hydra import compose
 from omegaconf import OmegaConf
 
+from multilens.app import build
+from multilens.app.compose import CONFIG_NAME, open_hydra
 from multilens.app.plain import plain, yaml_text
 
 
@@ -14,6 +19,13 @@ def test_the_text_is_omegaconfs() -> None:
     assert yaml_text(data) == OmegaConf.to_yaml(OmegaConf.create(data))
 
 
-def test_hydras_part_is_left_out_and_what_refers_to_other_keys_is_resolved() -> None:
-    config = OmegaConf.create({"hydra": {"run": 1}, "near": 2.0, "far": "${near}"})
-    assert plain(config) == {"near": 2.0, "far": 2.0}
+@pytest.mark.parametrize(
+    "words", [["experiment=demo"], ["experiment=wide_ultrawide_tele", "name=1e3"], ["back=d3s", "metric=worst_case"]]
+)
+def test_plain_data_are_omegaconfs(words: list[str]) -> None:
+    with open_hydra(Namespace(config_path=None, config_dir=None)):
+        config = compose(CONFIG_NAME, words)
+    expected = OmegaConf.to_container(config, resolve=True, enum_to_str=True)
+    assert plain(build.typed(config)) == expected
+    # Keys in their order: that is how the file is written.
+    assert yaml_text(plain(build.typed(config))) == OmegaConf.to_yaml(config, resolve=True)

@@ -104,7 +104,7 @@ def check_command_line(arguments: Namespace) -> Checked:
             config = composed(config_name, lines) if chooses_file or not changed else compose(config_name, lines)
             configs[changed] = build.typed(config)
             build.check(configs[changed])
-            whole[changed] = plain(config)
+            whole[changed] = plain(configs[changed])
     sweep = None if folder is None else Sweep(folder, _claim(overrides, swept, whole))
     return Checked(configs, tuple(override.get_key_element() for override in swept), sweep)
 

@@ -6,10 +6,8 @@ from functools import partial
 from importlib.util import find_spec
 from pathlib import Path
 
-from omegaconf import DictConfig, OmegaConf
-
 from multilens.app.ending import DONE, NOTHING_FOUND, tell
-from multilens.app.given import Given, compose_given, read_given
+from multilens.app.given import compose_given, read_given
 from multilens.app.loading import load_torch
 from multilens.app.plain import plain
 from multilens.app.refusal import RefusedError, meant, refused_at
@@ -141,7 +139,7 @@ def _number(name: str, text: str, least: int) -> int:
 def _open(options: _Options, asked: Asked) -> None:
     """Check every end of what may be chosen, and take the folder, or find that it is this exploration's already."""
     configs = {
-        changed: plain(_config(read_given([*asked.presets, *asked.lines, *lines])))
+        changed: plain(read_given([*asked.presets, *asked.lines, *lines]).config)
         for changed, lines in each_end(asked.space)
     }
     chosen_by = {"minimise": ",".join(options.objectives), "seed": str(options.seed)}
@@ -157,15 +155,9 @@ def _row(out: Path, asked: Asked, number: int, settings: Sequence[tuple[str, str
     """Give what comes of a trial, whose lock is held."""
     lines = [f"{key}={value}" for key, value in settings]
     # What does not go together is for the search to refuse: then the trial has a row that says so, and is done with.
-    config = _config(compose_given([*asked.presets, *asked.lines, *lines]))
+    config = compose_given([*asked.presets, *asked.lines, *lines]).config
     compute_if_missing(config, out / str(number), [*asked.lines, *lines], True)
     return read_job(out / str(number)).row
-
-
-def _config(given: Given) -> DictConfig:
-    config = OmegaConf.create(given.text)
-    assert isinstance(config, DictConfig)
-    return config
 
 
 def _told(options: _Options, best: Sequence[SweepRow]) -> int:

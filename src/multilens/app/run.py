@@ -8,7 +8,7 @@ from typing import NoReturn
 
 from hydra.core.hydra_config import HydraConfig
 from hydra.types import RunMode
-from omegaconf import DictConfig, OmegaConf
+from omegaconf import DictConfig
 
 from multilens.app.answer import answer
 from multilens.app.busy import busy
@@ -16,6 +16,7 @@ from multilens.app.ending import BAD_INPUT, BROKEN_PIPE, NOTHING_FOUND, SYSTEM_F
 from multilens.app.loading import load_torch
 from multilens.app.plain import plain, yaml_text
 from multilens.app.refusal import RefusedError
+from multilens.app.schema import Config
 from multilens.app.search import NothingFoundError
 from multilens.app.workers import end_with_parent
 
@@ -41,6 +42,8 @@ def run_job(config: DictConfig, as_json: bool = False) -> None:
         OSError: the folder cannot be written by a worker of a sweep.
         RefusedError: a worker was started for another sweep than that of the folder.
     """
+    from multilens.app import build
+
     hydra = HydraConfig.get()
     folder, overrides = Path(hydra.runtime.output_dir), list(hydra.overrides.task)
     in_sweep = hydra.mode == RunMode.MULTIRUN
@@ -48,14 +51,14 @@ def run_job(config: DictConfig, as_json: bool = False) -> None:
     in_process = not in_sweep or "basic_launcher" in hydra.launcher._target_
     try:
         # Once and first: the checksum of a drawing is that of the one which is read, whatever becomes of it meanwhile.
-        OmegaConf.resolve(config)
+        given = build.typed(config)
         if in_sweep:
             end_with_parent()
             from multilens.app.sweep_job import run_sweep_job
 
-            run_sweep_job(config, folder, overrides, in_process)
+            run_sweep_job(given, folder, overrides, in_process)
         else:
-            _run_alone(config, folder, overrides, as_json)
+            _run_alone(given, folder, overrides, as_json)
     except BrokenPipeError:
         raise SystemExit(BROKEN_PIPE) from None
     except (OSError, RefusedError) as error:
@@ -66,7 +69,7 @@ def run_job(config: DictConfig, as_json: bool = False) -> None:
         _remove_if_empty(folder)
 
 
-def _run_alone(config: DictConfig, folder: Path, overrides: list[str], as_json: bool) -> None:
+def _run_alone(config: Config, folder: Path, overrides: list[str], as_json: bool) -> None:
     load_torch()
     from multilens.app.searched import from_here, log_text, searched
     from multilens.runs import write_run
@@ -87,12 +90,11 @@ def _run_alone(config: DictConfig, folder: Path, overrides: list[str], as_json: 
     answer(said, found.design, write, as_json)
 
 
-def _estimates(config: DictConfig) -> str:
-    from multilens.app import build
+def _estimates(config: Config) -> str:
     from multilens.app.estimates import notes
 
     given = [line.partition("=")[0] for line in HydraConfig.get().overrides.task]
-    return notes(build.typed(config), given)
+    return notes(config, given)
 
 
 def _leave(code: int, reason: Exception) -> NoReturn:

@@ -6,9 +6,8 @@ from pathlib import Path
 from time import monotonic
 from typing import TYPE_CHECKING
 
-from omegaconf import DictConfig
-
 from multilens.app import build
+from multilens.app.schema import Config
 from multilens.app.search import NothingFoundError, search
 from multilens.app.tolerance import build_tolerance
 
@@ -31,11 +30,11 @@ class Searched:
     seconds: float
 
 
-def searched(config: DictConfig, visible: bool) -> Searched:
-    """Search as a composed configuration says; torch is loaded.
+def searched(config: Config, visible: bool) -> Searched:
+    """Search as a configuration says; torch is loaded.
 
     Args:
-        config: composed, without Hydra's own part.
+        config: what is asked.
         visible: whether progress is shown, where there is a terminal.
 
     Raises:
@@ -45,12 +44,11 @@ def searched(config: DictConfig, visible: bool) -> Searched:
     # It brings torch, which a sweep does not need before it has a job to compute, and which no signal may cut short.
     from multilens.app.terminal import progress_bar
 
-    given = build.typed(config)
-    build.check(given)
-    problem, began, stages = build.build_question(given), monotonic(), []
+    build.check(config)
+    problem, began, stages = build.build_question(config), monotonic(), []
     with progress_bar(stages, visible) as listener:
-        found = search(problem, given, listener)
-    design, seconds = replace(found, tolerance=build_tolerance(given.tolerance)), monotonic() - began
+        found = search(problem, config, listener)
+    design, seconds = replace(found, tolerance=build_tolerance(config.tolerance)), monotonic() - began
     if not design.feasible:
         raise NothingFoundError(design.reason)
     return Searched(design, (*stages, design.status, str(design)), seconds)

@@ -6,12 +6,13 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from omegaconf import DictConfig, OmegaConf
+from omegaconf import OmegaConf
 
 from multilens.app.ending import tell
 from multilens.app.loading import keep_what_is_loaded, load_torch
 from multilens.app.plain import plain, yaml_text
 from multilens.app.refusal import RefusedError, one_line
+from multilens.app.schema import Config
 from multilens.app.search import NothingFoundError
 from multilens.app.searched import from_here, log_text, searched
 from multilens.app.sweep_folder import refuse_other_versions
@@ -30,13 +31,13 @@ if TYPE_CHECKING:
 Settings = tuple[tuple[str, str], ...]
 
 
-def run_sweep_job(config: DictConfig, folder: Path, overrides: Sequence[str], visible: bool) -> None:
+def run_sweep_job(config: Config, folder: Path, overrides: Sequence[str], visible: bool) -> None:
     """Compute a job and write its folder, unless that was done before, or is being done by somebody else.
 
     A job that finds nothing, or fails by a fault of ours, leaves a folder that says why: the sweep goes on.
 
     Args:
-        config: composed, without Hydra's own part.
+        config: of the job.
         folder: of the job, in the folder of the sweep; its name is the number of the job.
         overrides: words of the command line that make the job.
         visible: whether progress is shown, where there is a terminal.
@@ -57,7 +58,7 @@ def run_sweep_job(config: DictConfig, folder: Path, overrides: Sequence[str], vi
         write_tables_now_and_then(folder.parent)
 
 
-def compute_if_missing(config: DictConfig, folder: Path, overrides: Sequence[str], visible: bool) -> bool:
+def compute_if_missing(config: Config, folder: Path, overrides: Sequence[str], visible: bool) -> bool:
     """Compute a job whose lock is held and say whether there was anything to compute; see `run_sweep_job`."""
     claim, question = read_claim(folder.parent), plain(config)
     refuse_other_versions(claim)
@@ -77,7 +78,7 @@ def compute_if_missing(config: DictConfig, folder: Path, overrides: Sequence[str
 
 
 def _compute(
-    config: DictConfig,
+    config: Config,
     folder: Path,
     overrides: Sequence[str],
     fixed: Sequence[str],

@@ -8,19 +8,21 @@ from pathlib import Path
 
 from omegaconf import DictConfig, OmegaConf
 
+from multilens.app import build
 from multilens.app.plain import plain, yaml_text
+from multilens.app.schema import Config
 from multilens.storage import write_whole
 from multilens.sweeps.locks import forget, held
 
-Compute = Callable[[DictConfig, Path, Sequence[str], bool], bool]
+Compute = Callable[[Config, Path, Sequence[str], bool], bool]
 PREFIX = "waiting-"
 
 
-def leave_waiting(config: DictConfig, folder: Path, overrides: Sequence[str]) -> None:
+def leave_waiting(config: Config, folder: Path, overrides: Sequence[str]) -> None:
     """Note that a job is to be looked at once more at the end of the sweep.
 
     Args:
-        config: composed, without Hydra's own part.
+        config: of the job.
         folder: of the job.
         overrides: words of the command line that make the job.
     """
@@ -54,6 +56,6 @@ def _finish(note: Path, folder: Path, compute_if_missing: Compute) -> None:
         return
     job = OmegaConf.load(note)
     assert isinstance(job, DictConfig)
-    compute_if_missing(job.config, folder, list(job.overrides), True)
+    compute_if_missing(build.typed(job.config), folder, list(job.overrides), True)
     note.unlink(missing_ok=True)
     forget(note.parent, note.stem)
