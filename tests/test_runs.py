@@ -175,14 +175,14 @@ def test_a_disk_that_fills_up_at_any_file_leaves_nothing(tmp_path, design, sketc
 
 @pytest.mark.parametrize("file", sorted(TEXTS))
 def test_a_text_that_cannot_be_written_leaves_nothing(tmp_path, design, sketches, monkeypatch, file):
-    write_text = Path.write_text
+    write_bytes = Path.write_bytes
 
     def fills_up(path, *given, **named):
         if path.name == file:
             raise OSError(errno.ENOSPC, "No space left on device")
-        return write_text(path, *given, **named)
+        return write_bytes(path, *given, **named)
 
-    monkeypatch.setattr(Path, "write_text", fills_up)
+    monkeypatch.setattr(Path, "write_bytes", fills_up)
     with pytest.raises(OSError, match="No space left"):
         write_run(tmp_path / "run", design, "", "")
     assert not names(tmp_path)

@@ -74,7 +74,7 @@ def redraw(folder: Path) -> None:
 
 
 def _write(path: Path, text: str) -> None:
-    path.write_text(text, encoding="utf-8", newline="\n")
+    path.write_bytes(text.encode())
 
 
 def _draw(design: Design, folder: Path) -> None:

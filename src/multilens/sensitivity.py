@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from math import pi
 
 import torch
-from jaxtyping import Float
+from jaxtyping import Float, Int
 from torch import Tensor
 
 from multilens.layout import Layout
@@ -145,12 +145,18 @@ def sensitivity(problem: Problem, layout: Layout) -> Sensitivity:
     layout = layout.to(torch.float64)
     figure = problem.metric.figure(problem.score(layout).item())
     slopes = _slopes(problem, layout, figure)
-    rows = tuple(_row(problem, layout, lens, slope, figure) for lens, slope in enumerate(slopes))
+    winners = _winners(problem, layout)
+    rows = tuple(_row(problem, layout, lens, slope, figure, winners) for lens, slope in enumerate(slopes))
     return Sensitivity(problem.metric.name, problem.metric.unit, figure, rows)
 
 
 def _row(
-    problem: Problem, layout: Layout, lens: int, slopes: tuple[float, float, float], figure: float
+    problem: Problem,
+    layout: Layout,
+    lens: int,
+    slopes: tuple[float, float, float],
+    figure: float,
+    winners: Int[Tensor, " z"],
 ) -> LensSensitivity:
     shift, aperture, focus = (
         _change(problem, layout, lens, step, slope, figure)
@@ -158,8 +164,8 @@ def _row(
     )
     focal_length = problem.lenses[lens].focal_length
     unknown = (
-        _figure_of_bias(problem, layout, lens, SHIFT / problem.depths),
-        _figure_of_bias(problem, layout, lens, DECENTRE / focal_length + DECENTRE / problem.depths),
+        _figure_of_bias(problem, layout, lens, SHIFT / problem.depths, winners),
+        _figure_of_bias(problem, layout, lens, DECENTRE / focal_length + DECENTRE / problem.depths, winners),
     )
     return LensSensitivity(shift, *unknown, aperture, focus, _covered(problem, layout, lens, figure))
 
@@ -231,14 +237,21 @@ def _of_like(layout: Layout, **changed: Tensor) -> Layout:
     return Layout(*(part if name in changed else part.expand(count, *part.shape) for name, part in parts.items()))
 
 
-def _figure_of_bias(problem: Problem, layout: Layout, lens: int, direction: Float[Tensor, " z"]) -> float:
+def _winners(problem: Problem, layout: Layout) -> Int[Tensor, " z"]:
+    """Give the index of the measurement that is best at each depth, -1 where all fail."""
+    errors = problem.errors(layout)
+    # Where every measurement fails none wins, and nothing that moves falsifies the guess.
+    return errors.argmin(-2).where(errors.isfinite().any(-2), -1)
+
+
+def _figure_of_bias(
+    problem: Problem, layout: Layout, lens: int, direction: Float[Tensor, " z"], winners: Int[Tensor, " z"]
+) -> float:
     """Give the figure of the depth errors of the pairs that win if one lens mistakes directions, rad, at its worst.
 
     Along the baseline b of a pair a mistake a of one lens makes an error of Z^2 a . b / abs(b)^2.
     """
-    errors, depths = problem.errors(layout), problem.depths
-    # Where every measurement fails none wins, and nothing that moves falsifies the guess.
-    winners = errors.argmin(-2).where(errors.isfinite().any(-2), -1)
+    depths = problem.depths
     bias = torch.zeros(len(depths), 2, dtype=torch.float64)
     for k, measurement in enumerate(problem.measurements):
         if len(measurement.lenses) == 2 and lens in measurement.lenses:

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Iterator
 from dataclasses import fields, is_dataclass
+from functools import cache
 from types import UnionType
 from typing import Any, get_args, get_origin, get_type_hints
 
@@ -53,6 +54,7 @@ def _all_keys(kind: Any, above: str = "") -> Iterator[str]:
             yield from _all_keys(below, f"{above}{name}.")
 
 
+@cache
 def _members(kind: Any) -> dict[str, Any]:
     """Give what a type of the schema holds, by name; "*" stands for any name or index."""
     if is_dataclass(kind):

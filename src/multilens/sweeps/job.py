@@ -200,7 +200,7 @@ def _time(folder: Path) -> float | None:
 
 
 def _write(path: Path, text: str) -> None:
-    path.write_text(text, encoding="utf-8", newline="\n")
+    path.write_bytes(text.encode())
 
 
 def _finite(value: float) -> float | None:
