@@ -187,3 +187,17 @@ def test_commit_is_that_of_the_checkout_and_tells_of_changes(tmp_path, monkeypat
     told.append(asked())
     commit = git("rev-parse", "HEAD")
     assert told == [None, None, commit, commit, commit + "+"]
+
+
+def test_every_file_of_a_folder_reaches_the_disk_before_the_folder_is_there(tmp_path, monkeypatch):
+    folder, flushed = tmp_path / "run", []
+
+    def flush(handle):
+        assert not folder.exists()
+        flushed.append(os.fstat(handle).st_ino)
+
+    monkeypatch.setattr(os, "fsync", flush)
+    with folder_written_whole(folder) as inside:
+        for number in range(20):
+            (inside / str(number)).write_text("new")
+    assert sorted(flushed) == sorted(path.stat().st_ino for path in [folder, *folder.iterdir()])

@@ -6,6 +6,7 @@ import platform
 import shutil
 import subprocess
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import cache
@@ -16,6 +17,9 @@ from secrets import token_hex
 
 ESTIMATES = "estimates, which no source gives:"
 """Line of a log after which they come, a line each, indented."""
+
+AT_ONCE = 8
+"""Files of a folder that are flushed together."""
 
 LIBRARIES = ("multilens", "torch", "numpy", "scipy", "shapely", "hydra-core")
 
@@ -91,8 +95,9 @@ def folder_written_whole(folder: Path) -> Iterator[Path]:
     _refuse_unless_free(folder)
     with scratch_folder(folder) as beside:
         yield beside
-        for file in sorted(beside.rglob("*")):
-            _flush(file)
+        with ThreadPoolExecutor(AT_ONCE) as flushing:
+            # A disk that is asked for several at once takes hardly longer than for one; the list raises what one of them raised.
+            list(flushing.map(_flush, sorted(beside.rglob("*"))))
         _flush(beside)
         try:
             os.replace(beside, folder)
