@@ -96,12 +96,8 @@ class Design:
 
     @cached_property
     def rmse(self) -> float:
-        """Root-mean-square error of depth, mm, whichever metric was asked for; NaN if infeasible.
-
-        Of a score of one's own it is the root, NaN if that is negative.
-        """
-        drawn = as_drawn(self.problem)
-        if isinstance(drawn, Problem) and self.status != INFEASIBLE:
+        """Root-mean-square error of depth, mm, whichever metric was asked for, or the root of a score of one's own; NaN if none."""
+        if isinstance(drawn := as_drawn(self.problem), Problem) and self.status != INFEASIBLE:
             is_score = drawn is self.problem and isinstance(drawn.metric, MeanSquare)
             return sqrt(self.score if is_score else drawn.mean_square(self.layout).item())
         return sqrt(self.score) if self.score >= 0 else nan
