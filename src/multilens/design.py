@@ -96,7 +96,7 @@ class Design:
 
     @cached_property
     def rmse(self) -> float:
-        """Root-mean-square error of depth, mm, whichever metric was asked for, or the root of a score of one's own; NaN if none."""
+        """Root-mean-square error of depth, mm, whichever metric was asked for, or root of a score of one's own; NaN if none."""
         if isinstance(drawn := as_drawn(self.problem), Problem) and self.status != INFEASIBLE:
             is_score = drawn is self.problem and isinstance(drawn.metric, MeanSquare)
             return sqrt(self.score if is_score else drawn.mean_square(self.layout).item())
