@@ -101,3 +101,24 @@ def test_the_same_generator_gives_the_same(crowded: ml.Problem) -> None:
 def test_a_layout_alone_has_foci_too(crowded: ml.Problem) -> None:
     _, foci, share = foci_of(crowded)
     assert foci.afresh(share[:1]).shape == foci.improved(share[:1]).shape == share[:1].shape
+
+
+def test_equal_apertures_keep_their_promise() -> None:
+    problem = ml.Problem(ml.Back.rectangle(60, 60), [ml.Lens(1.0, (2.0, 9.0))] * 4, ml.linear_depths(20, 50, 64))
+    variables, foci, share = foci_of(problem)
+    share[:, 2 * variables.count : variables.focus_start] = 0.7
+    kept = problem.score(variables.layout_of(foci.widest_nearest(share)))
+    # No focus is held by its bounds, and every depth may be the end of a stretch.
+    torch.testing.assert_close(foci.promise(share), kept, rtol=1e-9, atol=0)
+
+
+def test_wider_apertures_promise_more_whichever_lens_has_them() -> None:
+    problem = ml.Problem(ml.Back.rectangle(60, 60), [ml.Lens(1.0, (2.0, 9.0))] * 4, ml.linear_depths(20, 50, 64))
+    variables, foci, share = foci_of(problem)
+    radii = slice(2 * variables.count, variables.focus_start)
+    share[:, radii] *= 0.9
+    wider, turned = share.clone(), share.clone()
+    wider[:, radii.start] += 0.1
+    turned[:, radii] = turned[:, radii].roll(1, -1)
+    assert (foci.promise(wider) < foci.promise(share)).all()
+    torch.testing.assert_close(foci.promise(turned), foci.promise(share))

@@ -16,11 +16,11 @@ from multilens.search.sketch import sketch
 from multilens.search.tighten import tighten
 from multilens.search.variables import Variables
 
-PACKED = 16
-"""Packings of which the best are polished."""
+PACKED, TRIES = 16, 2
+"""Packings of a round, and those of them that are polished."""
 
-TRIES, MOST_LENSES = 4, 4
-"""Packings that are polished, and the lenses up to which they are: of more lenses a wave says more in the time."""
+ROUNDS, MOST_LENSES = 4, 4
+"""Of packings, and the lenses up to which there are any: of more lenses a wave says more in the time."""
 
 ROUNDING = 1e-10
 """Part of the back's diagonal by which an aperture may be below its largest and count as that."""
@@ -58,24 +58,42 @@ def first_layouts(
     known = isinstance(question, Problem) and question.has_closed_form
     if not known or any(lens.position is not None for lens in question.lenses):
         return
-    drawn, best = sketch(question, *tried), inf
+    drawn, few = sketch(question, *tried), len(question.lenses) <= MOST_LENSES
     if drawn is not None:
         fitted = tighten(limits, drawn)
-        if limits(fitted).least >= 0:
-            share = foci.dealt(variables.spread(variables.vector(fitted)))
-            best = question.score(variables.layout_of(share)).item()
-            yield share
-            if (drawn.aperture_radius - fitted.aperture_radius).max() <= ROUNDING * question.back.size:
+        spacious = (drawn.aperture_radius - fitted.aperture_radius).max() <= ROUNDING * question.back.size
+        if (spacious or not few) and limits(fitted).least >= 0:
+            yield foci.dealt(variables.spread(variables.vector(fitted)))
+            if spacious:
                 return
-    if len(question.lenses) > MOST_LENSES:
-        return
-    packed = packings(question, *tried, PACKED, generator)
-    ranked = foci.widest_nearest(variables.spread(variables.vector(packed)))
-    order = question.score(variables.layout_of(ranked)).argsort()
-    for at in order[:TRIES].tolist():
-        x = polish(question, variables, ranked[at, variables.free], deadline, ROUGH, gapless=True)
-        share = foci.dealt(variables.spread(x), quickly=True)
+    if few:
+        yield from _packed(question, variables, foci, tried, generator, deadline)
+
+
+def _packed(
+    question: Problem,
+    variables: Variables,
+    foci: Foci,
+    tried: tuple[Float[Tensor, "p 2"], Float[Tensor, " p"]],
+    generator: Generator,
+    deadline: float,
+) -> Iterator[Float[Tensor, " v"]]:
+    """Yield packings that promise most, polished as if depths had no gaps, and the best with foci dealt anew, each if better."""
+    best, found = inf, None
+
+    def is_better(share: Float[Tensor, " v"]) -> bool:
+        nonlocal best, found
         score = question.score(variables.layout_of(share)).item()
         if score < best:
-            best = score
-            yield share
+            best, found = score, share
+            return True
+        return False
+
+    for _ in range(ROUNDS):
+        packed = variables.spread(variables.vector(packings(question, *tried, PACKED, generator)))
+        for share in foci.widest_nearest(packed[foci.promise(packed).argsort()[:TRIES]]):
+            share = variables.spread(polish(question, variables, share[variables.free], deadline, ROUGH, gapless=True))
+            if is_better(share):
+                yield share
+    if found is not None and is_better(share := foci.dealt(found)):
+        yield share

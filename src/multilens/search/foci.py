@@ -93,6 +93,17 @@ class Foci:
         _, slope = self.closed_form.gain_and_slope(self.variables.layout_of(share))
         return self._shared_out(share, slope[:, self.columns - self.variables.focus_start].argsort(-1).argsort(-1))
 
+    def promise(self, share: Float[Tensor, "b v"]) -> Float[Tensor, " b"]:
+        """Give what the layouts would score at the best foci if all apertures had their mean width, mm^2; 0 where none are shared.
+
+        A lens of twice the width serves twice the depths about as well. So the sum of the widths counts, and the longest baseline,
+        and much less which lens is focused where.
+        """
+        if not isinstance(self.stretches, Stretches):
+            return share.new_zeros(len(share))
+        gain, slope = self.closed_form.gain_and_slope(self.variables.layout_of(share))
+        return self.stretches.shared_out(gain, 1 / (1 / slope).mean(-1), len(self.columns))[1]
+
     def dealt(self, share: Float[Tensor, " v"], quickly: bool = False) -> Float[Tensor, " v"]:
         """Give one layout with the best foci for its apertures and its longest baseline; as it is where they cannot be told.
 

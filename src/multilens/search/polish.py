@@ -19,9 +19,9 @@ MARGIN = 1e-10
 LEAST_SCORE = 1e-12
 """Part of the score at the start below which its logarithm is not taken."""
 
-GENTLE = 0.01
+GENTLE, BOLD = 0.01, 0.1
 """Factor of what is minimised. SLSQP takes its curvature for 1 at first: with a small slope its first steps are short, and what
-is nearly there already stays in its basin."""
+is nearly there already stays in its basin. A first polish has farther to go."""
 
 ROUNDS = 8
 """In which terms that were not watched may be found to matter."""
@@ -71,11 +71,13 @@ def polish(
     for _ in range(ROUNDS):
         if not alone.watch(x.numpy()):
             break
-        x = _polished(alone, x, deadline, tolerance)
+        x = _polished(alone, x, deadline, tolerance, BOLD if gapless else GENTLE)
     return x
 
 
-def _polished(alone: Alone, x: Float[Tensor, " d"], deadline: float, tolerance: float) -> Float[Tensor, " d"]:
+def _polished(
+    alone: Alone, x: Float[Tensor, " d"], deadline: float, tolerance: float, pace: float
+) -> Float[Tensor, " d"]:
     """Polish by the terms that are watched."""
     from scipy.optimize import minimize
 
@@ -92,7 +94,7 @@ def _polished(alone: Alone, x: Float[Tensor, " d"], deadline: float, tolerance: 
         values, gradient = values / scale, gradient / scale
         if squared:
             values, gradient = _flattened(np.maximum(values, LEAST_SCORE), gradient)
-        return GENTLE * values, GENTLE * gradient
+        return pace * values, pace * gradient
 
     def room(vector: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         values, gradient = alone.room(vector)
@@ -110,7 +112,7 @@ def _polished(alone: Alone, x: Float[Tensor, " d"], deadline: float, tolerance: 
         bounds=[(0.0, high) for high in alone.variables.upper.tolist()] + [(None, None)] * len(more),
         constraints={"type": "ineq", "fun": value, "jac": jacobian},
         method="SLSQP",
-        options={"ftol": GENTLE * tolerance, "maxiter": 300},
+        options={"ftol": pace * tolerance, "maxiter": 300},
     )
     if not np.isfinite(result.x).all():
         return x

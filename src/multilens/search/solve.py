@@ -179,7 +179,6 @@ class _Search:
         self.rough = at_few_depths(question)
         self.penalty = penalty
         self.generator = torch.Generator().manual_seed(seed)
-        self.foci = Foci(self.rough, variables, self.generator)
         self.elite = Elite(MOST_ELITE)
         self.incumbent: Candidate | None = None
         self.best_value = inf
@@ -187,6 +186,11 @@ class _Search:
         self.out_of_time = False
         self.alive = 0
         self.tally = Tally()
+
+    @cached_property
+    def foci(self) -> Foci:
+        """What chooses the foci of many layouts; made when the first wave asks."""
+        return Foci(self.rough, self.variables, self.generator)
 
     @cached_property
     def seer(self) -> Seer:
@@ -218,17 +222,19 @@ class _Search:
             self._keep(share)
 
     def choose(self) -> None:
-        """Claim what is chosen before any wave, as it comes and polished."""
+        """Claim what is chosen before any wave as it comes, and the best of it polished."""
         tried, foci = tried_places(self.question.back, self.seed), Foci(self.question, self.exact, self.generator)
         first = first_layouts(self.question, self.exact, foci, self.limits, tried, self.generator, self.end)
+        last = None
         try:
-            for share in first:
-                self._claim(self.exact.layout_of(share))
-                self.tell("starts", 0.0, 0)
-                self._polish(self.exact.layout_of(share))
+            for last in first:
+                self._claim(self.exact.layout_of(last))
                 self.tell("starts", 0.0, 0)
         except OutOfTimeError:
             self.out_of_time = True
+        if last is not None:
+            self._polish(self.exact.layout_of(last))
+            self.tell("starts", 0.0, 0)
         if self.incumbent is not None:
             share = self.variables.spread(self.variables.vector(self.incumbent.layout)).unsqueeze(0)
             self.seer.calibrate(share)
