@@ -83,6 +83,26 @@ def test_no_way_to_deal_out_stretches_is_better(seed: int, count: int, gain: flo
     assert found <= in_stretches(gain, slope, near, far, depths, weights) * (1 + 1e-9)
 
 
+@given(st.integers(0, 2**31), st.integers(1, 3), st.floats(0.01, 2))
+def test_the_best_order_is_as_good_as_any_way_to_deal(seed: int, count: int, gain: float) -> None:
+    depths, weights, random = drawn(seed, 5)
+    slope = random.uniform(0.3, 3.0, count)
+    near = random.uniform(NEAR, FAR, count)
+    far, dealt = near + random.uniform(0, FAR, count), Dealing(depths, weights)
+    scores = [
+        score(gain, slope, dealt.best_in_order(gain, slope, near, far, np.array(order)), depths, weights)
+        for order in permutations(range(count))
+    ]
+    assert min(scores) <= in_stretches(gain, slope, near, far, depths, weights) * (1 + 1e-9)
+
+
+def test_many_unlike_lenses_keep_the_order_that_is_asked_for() -> None:
+    random = np.random.default_rng(4)
+    depths, order = np.linspace(300, 1800, 300), random.permutation(12)
+    foci = Dealing(depths, np.full(300, 1 / 300)).best_in_order(np.inf, random.uniform(1, 2, 12), *anywhere(12), order)
+    assert foci[order].tolist() == sorted(foci)
+
+
 @pytest.mark.parametrize("seed", range(5))
 def test_of_nearly_equal_lenses_no_foci_at_all_are_better(seed: int) -> None:
     depths, weights, random = drawn(seed, 7)

@@ -21,7 +21,7 @@ def chosen(problem: ml.Problem, generator: torch.Generator, deadline: float = in
     variables = Variables(problem)
     foci, tried = Foci(problem, variables, generator), tried_places(problem.back, 0)
     found = first_layouts(problem, variables, foci, Limits(problem), tried, generator, deadline)
-    return [variables.layout_of(share) for share in found]
+    return [variables.layout_of(share) for share, _ in found]
 
 
 def cameras() -> ml.Problem:
@@ -48,13 +48,6 @@ def test_crowded_lenses_come_to_local_optima(generator: torch.Generator) -> None
     best = ml.solve(problem, starts=16, patience=4, proof=0)
     # They are polished as if depths had no gaps, to 1e-5.
     assert min(problem.score(layout).item() for layout in found) < 1.01 * best.score
-
-
-def test_what_comes_is_better_than_what_came_before(generator: torch.Generator) -> None:
-    problem = eyes(3)
-    scores = [problem.score(layout).item() for layout in chosen(problem, generator)]
-    assert scores
-    assert scores == sorted(scores, reverse=True)
 
 
 def test_what_is_chosen_is_feasible(generator: torch.Generator) -> None:

@@ -45,15 +45,6 @@ def test_no_way_to_deal_the_depths_is_better(seed: int, count: int, gain: float)
     assert score(gain * one, foci, depths, weights) == pytest.approx(exhaustive(gain, count, depths, weights), rel=1e-9)
 
 
-@given(st.integers(0, 2**31), st.integers(1, 3), st.floats(0.005, 0.5), st.floats(0.1, 10))
-def test_the_score_that_is_told_is_that_of_the_foci(seed: int, count: int, ratio: float, slope: float) -> None:
-    depths, weights = drawn(seed, 7)
-    steep = torch.full((1,), slope, dtype=torch.float64)
-    (foci,), (told,) = Stretches(depths, weights).shared_out(ratio * steep, steep, count)
-    by_units_of_slope = score(torch.full((1,), ratio, dtype=torch.float64), foci, depths, weights)
-    assert told.item() == pytest.approx(slope**2 * by_units_of_slope, rel=1e-9)
-
-
 @given(st.integers(0, 2**31), st.integers(1, 3))
 def test_nor_without_stereo(seed: int, count: int) -> None:
     depths, weights = drawn(seed, 7)

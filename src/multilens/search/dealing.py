@@ -97,14 +97,56 @@ class Dealing:
         Returns:
             mm. A focus that serves no depth is anywhere within its bounds.
         """
-        # Where there is no stereo it is dearer than any lens at any depth, and no more: sums would lose their digits.
-        farthest = max(self.beside[-1], near.max())
-        gain = min(gain, 2 * float(slope.max() * farthest / self.beside[0]))
+        gain = self._as_dear_as_any(gain, slope, near)
         kinds = self._few_kinds(gain, _alike(slope, near, far))
         foci = np.empty(len(slope))
         for focus, kind, turn in self._stretches(gain, kinds):
             foci[kinds[kind].members[turn]] = focus
         return foci.clip(near, far)
+
+    def best_in_order(
+        self,
+        gain: float,
+        slope: Float[np.ndarray, " f"],
+        near: Float[np.ndarray, " f"],
+        far: Float[np.ndarray, " f"],
+        order: Int[np.ndarray, " f"],
+    ) -> Float[np.ndarray, " f"]:
+        """Give the foci that serve the depths best where it is known which of them comes after which; none counts as another.
+
+        Args:
+            gain: of stereo, err = gain Z^2, 1/mm; infinite where there is none.
+            slope: of defocus of each focus, err = slope Z abs(Z - Zf), 1/mm.
+            near: the least that each focus may be, mm.
+            far: the largest, mm.
+            order: of the foci, the nearest first.
+
+        Returns:
+            mm, of each focus.
+        """
+        gain = self._as_dear_as_any(gain, slope, near)
+        kinds = [Kind(float(slope[at]), float(near[at]), float(far[at]), (int(at),)) for at in order]
+        by_stereo = gain**2 * self.moments[2]
+        foci, least, steps = np.empty(len(slope)), by_stereo, []
+        for kind in kinds:
+            table = self._table(kind, self._longest(gain, kind.slope))
+            way = _cheapest(by_stereo, {0: (least, table)})
+            steps.append((kind, table, way))
+            least = way.least
+        end = len(self.beside) - 1
+        for kind, table, way in reversed(steps):
+            end = way.ended[end]
+            foci[kind.members[0]] = table.focus[end, way.length[end]]
+            end -= way.length[end]
+        return foci.clip(near, far)
+
+    def _as_dear_as_any(self, gain: float, slope: np.ndarray, near: np.ndarray) -> float:
+        """Give the gain of stereo, where there is none one that is dearer than any lens at any depth, and no more.
+
+        Of what is dearer still sums would lose their digits.
+        """
+        farthest = max(self.beside[-1], near.max())
+        return min(gain, 2 * float(slope.max() * farthest / self.beside[0]))
 
     def _few_kinds(self, gain: float, kinds: list[Kind]) -> list[Kind]:
         longest = self._longest(gain, kinds[0].slope)

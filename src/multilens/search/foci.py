@@ -1,5 +1,8 @@
 """The foci of a wave: shared out by dynamic programming or one by one, and a last look at those of the best."""
 
+from functools import cached_property
+
+import numpy as np
 import torch
 from jaxtyping import Float
 from torch import Generator, Tensor
@@ -9,6 +12,7 @@ from multilens.problem import Problem
 from multilens.question import Question
 from multilens.robust import as_drawn
 from multilens.search.dealing import Dealing
+from multilens.search.ordering import Ordering
 from multilens.search.piercing import Piercing
 from multilens.search.refocus import refocus
 from multilens.search.stretches import Stretches
@@ -16,9 +20,6 @@ from multilens.search.variables import Variables
 
 DEALT = 7
 """Ways to deal the shared-out foci to unequal lenses that are tried for the best layout, beside its own order."""
-
-QUICK_ENDS = 128
-"""Places along the depths at which a stretch may begin or end where foci are dealt quickly."""
 
 
 class Foci:
@@ -40,12 +41,10 @@ class Foci:
         self.columns = variables.free[variables.free >= variables.focus_start]
         self.stretches: Stretches | Piercing | None = None
         self.dealing: Dealing | None = None
-        self.quick_dealing: Dealing | None = None
         if isinstance(drawn := self.question, Problem) and len(self.columns) and _is_shared_out(drawn):
             self.closed_form = drawn.closed_form(device)
             if drawn.metric.is_mean:
                 self.dealing = Dealing(drawn.depths.numpy(), drawn.score_weights.numpy())
-                self.quick_dealing = Dealing(drawn.depths.numpy(), drawn.score_weights.numpy(), QUICK_ENDS)
             kind = Stretches if drawn.metric.is_mean else Piercing
             self.stretches = kind(drawn.depths.to(device), drawn.score_weights.to(device))
 
@@ -81,7 +80,7 @@ class Foci:
         orders = torch.cat([own, self._any_order(DEALT)])
         dealt = self._shared_out(share.expand(1 + DEALT, -1), orders)
         if self.dealing is not None:
-            dealt = torch.cat([dealt, self.dealt(share).unsqueeze(0)])
+            dealt = torch.cat([dealt, self.dealt(share).unsqueeze(0), self.rearranged(share).unsqueeze(0)])
         tried = torch.cat([share.unsqueeze(0), dealt, self._one_by_one(dealt, afresh=False)])
         with torch.no_grad():
             return tried[self._minimised(tried).argmin()]
@@ -93,28 +92,41 @@ class Foci:
         _, slope = self.closed_form.gain_and_slope(self.variables.layout_of(share))
         return self._shared_out(share, slope[:, self.columns - self.variables.focus_start].argsort(-1).argsort(-1))
 
-    def promise(self, share: Float[Tensor, "b v"]) -> Float[Tensor, " b"]:
-        """Give what the layouts would score at the best foci if all apertures had their mean width, mm^2; 0 where none are shared.
-
-        A lens of twice the width serves twice the depths about as well. So the sum of the widths counts, and the longest baseline,
-        and much less which lens is focused where.
-        """
-        if not isinstance(self.stretches, Stretches):
-            return share.new_zeros(len(share))
-        gain, slope = self.closed_form.gain_and_slope(self.variables.layout_of(share))
-        return self.stretches.shared_out(gain, 1 / (1 / slope).mean(-1), len(self.columns))[1]
-
-    def dealt(self, share: Float[Tensor, " v"], quickly: bool = False) -> Float[Tensor, " v"]:
-        """Give one layout with the best foci for its apertures and its longest baseline; as it is where they cannot be told.
-
-        Quickly they are nearly the best, and a polish is to follow.
-        """
-        dealing = self.quick_dealing if quickly else self.dealing
-        if dealing is None:
+    def dealt(self, share: Float[Tensor, " v"]) -> Float[Tensor, " v"]:
+        """Give one layout with the best foci for its apertures and its longest baseline; as it is where they cannot be told."""
+        if self.dealing is None:
             return share
         gain, slope = self.closed_form.gain_and_slope(self.variables.layout_of(share))
-        near, far = self.variables.low[self.variables.focus_start :], self.variables.high[self.variables.focus_start :]
-        foci = dealing.best_foci(gain.item(), *(each.cpu().double().numpy() for each in (slope, near, far)))
+        return self._with_foci(share, self.dealing.best_foci(gain.item(), _in_numpy(slope), *self._bounds()))
+
+    def rearranged(self, share: Float[Tensor, " v"]) -> Float[Tensor, " v"]:
+        """Give one layout with its lenses in a better order along the depths, and the best foci for that; never worse than it was.
+
+        As many unlike lenses as there may be are told apart, which `dealt` does not.
+        """
+        if self.dealing is None or self.ordering is None:
+            return share
+        gain, slope = self.closed_form.gain_and_slope(self.variables.layout_of(share))
+        slope, (near, far) = _in_numpy(slope), self._bounds()
+        tip = near * (far / near) ** _in_numpy(share[self.variables.focus_start :])
+        order = self.ordering.improved(gain.item(), slope, tip)
+        after = self._with_foci(share, self.dealing.best_in_order(gain.item(), slope, near, far, order))
+        return after if self._minimised(after) < self._minimised(share) else share
+
+    @cached_property
+    def ordering(self) -> Ordering | None:
+        """Exchanges lenses along the depths; None where foci are not dealt or all depths are one."""
+        problem = self.question
+        if self.dealing is None or not isinstance(problem, Problem) or len(problem.depths.unique()) < 2:
+            return None
+        return Ordering(problem.depths.numpy(), problem.score_weights.numpy())
+
+    def _bounds(self) -> tuple[np.ndarray, np.ndarray]:
+        start = self.variables.focus_start
+        return _in_numpy(self.variables.low[start:]), _in_numpy(self.variables.high[start:])
+
+    def _with_foci(self, share: Tensor, foci: np.ndarray) -> Tensor:
+        near, far = (end[self.variables.focus_start :] for end in (self.variables.low, self.variables.high))
         at = (torch.from_numpy(foci).to(near) / near).log() / (far / near).log()
         share = share.clone()
         share[self.columns] = at[self.columns - self.variables.focus_start].clamp(0, 1)
@@ -152,3 +164,7 @@ class Foci:
 
 def _is_shared_out(problem: Problem) -> bool:
     return problem.is_envelope and any(isinstance(cue, LensDefocus) for cue in problem.cues)
+
+
+def _in_numpy(tensor: Tensor) -> np.ndarray:
+    return tensor.detach().cpu().double().numpy()

@@ -54,14 +54,18 @@ class Gapless:
         np.minimum(np.maximum(cut, self.edge[0], out=cut), self.edge[-1], out=cut).sort()
         middle = (cut[1:] + cut[:-1]) / 2
         winner = (slope[:, None] * np.abs(middle - tip[:, None])).argmin(0)
-        upto = self._integrals(cut)
+        upto = self.integrals(cut)
         second_moment, third, fourth = (np.bincount(winner, each, len(slope)) for each in upto[:, 1:] - upto[:, :-1])
         drift = tip * second_moment - third
         spread = np.maximum(fourth + tip * (drift - third), 0)
         return float(slope**2 @ spread), 2 * slope * spread, 2 * slope**2 * drift
 
-    def _integrals(self, end: Float[np.ndarray, " c"]) -> Float[np.ndarray, "3 c"]:
-        """Give the integrals of w Z^2, w Z^3 and w Z^4 up to each end."""
+    def integrals(self, end: Float[np.ndarray, " c"]) -> Float[np.ndarray, "3 c"]:
+        """Give the integrals of w Z^2, w Z^3 and w Z^4 from the first edge up to each end.
+
+        Args:
+            end: from the first edge to the last, mm.
+        """
         part = np.minimum(self.edge[1:].searchsorted(end, side="right"), len(self.density) - 1)
         return self.begun[:, part] + self.density[part] * _powers(end)
 

@@ -38,6 +38,7 @@ def packings(
     clearance = np.array([lens.clearance for lens in lenses])
     fits = room >= (low + clearance).min()
     spot, left = places[fits][:PLACES].numpy(), room[fits][:PLACES].repeat(count, 1).numpy()
+    x, y = spot.T.copy()
     cap, uncapped, order = (torch.rand(count, len(lenses), generator=generator).double().numpy() for _ in range(3))
     most = np.minimum(high, np.maximum(left[0].max() - clearance, low))
     cap = np.where(uncapped < UNCAPPED, high, low + (most - low) * np.sqrt(cap))
@@ -48,7 +49,7 @@ def packings(
         at = np.where(body >= NEARLY * body.max(1, keepdims=True), drawn, -1).argmax(1)
         place[each, lens] = spot[at]
         radius[each, lens] = np.clip(body[each, at] - clearance[lens], low[lens], high[lens])
-        away = np.hypot(*(spot - spot[at][:, None]).transpose(2, 0, 1))
+        away = np.sqrt((x - x[at][:, None]) ** 2 + (y - y[at][:, None]) ** 2)
         left = np.minimum(left, away - (radius[each, lens] + clearance[lens])[:, None] - question.gap)
     far = torch.tensor([far for _, far in question.focus_range], dtype=torch.float64)
     foci = far.unsqueeze(-1).repeat(count, 1, max(lens.tiers for lens in lenses))

@@ -122,8 +122,7 @@ def solve(
     end = inf if time_limit is None else monotonic() + time_limit
     name = getattr(penalty, "__name__", repr(penalty))
     origin = Origin(seed, starts, patience, name, time_limit, versions(), source_commit(), len(known))
-    reason = why_nothing_fits(problem)
-    if reason is not None:
+    if (reason := why_nothing_fits(problem)) is not None:
         variables = Variables(problem)
         layout, certificate = legalise(problem, variables.layout(scattered_starts(problem, variables, 1, seed)[0]))
         return Design(problem, layout, INFEASIBLE, reason, certificate, origin=origin)
@@ -138,8 +137,7 @@ def solve(
             raise RuntimeError(f"none of the {begun} starts stayed healthy: scores or gradients were not finite")
         search.vary(patience, batch)
         search.finish()
-    best = search.best
-    convergence = search.tally.convergence
+    best, convergence = search.best, search.tally.convergence
     if best.certificate.feasible:
         status = OUT_OF_TIME if search.out_of_time else COMPLETE
         if proof:
@@ -181,15 +179,13 @@ class _Search:
         self.generator = torch.Generator().manual_seed(seed)
         self.elite = Elite(MOST_ELITE)
         self.incumbent: Candidate | None = None
-        self.best_value = inf
         self.polished_values: list[float] = []
-        self.out_of_time = False
-        self.alive = 0
+        self.best_value, self.alive, self.out_of_time = inf, 0, False
         self.tally = Tally()
 
     @cached_property
     def foci(self) -> Foci:
-        """What chooses the foci of many layouts; made when the first wave asks."""
+        """What chooses the foci of waves; made when the first asks."""
         return Foci(self.rough, self.variables, self.generator)
 
     @cached_property
@@ -222,22 +218,21 @@ class _Search:
             self._keep(share)
 
     def choose(self) -> None:
-        """Claim what is chosen before any wave as it comes, and the best of it polished."""
+        """Claim what is chosen before any wave, as it comes and polished, and keep the polished to be varied."""
         tried, foci = tried_places(self.question.back, self.seed), Foci(self.question, self.exact, self.generator)
         first = first_layouts(self.question, self.exact, foci, self.limits, tried, self.generator, self.end)
-        last = None
+        kept: list[Tensor] = []
         try:
-            for last in first:
-                self._claim(self.exact.layout_of(last))
+            for share, worth_a_polish in first:
+                self._claim(self.exact.layout_of(share))
                 self.tell("starts", 0.0, 0)
+                if worth_a_polish and (found := self._polish(self.exact.layout_of(share))):
+                    kept.append(self.variables.spread(self.variables.vector(found.layout)))
+                    self.tell("starts", 0.0, 0)
         except OutOfTimeError:
             self.out_of_time = True
-        if last is not None:
-            self._polish(self.exact.layout_of(last))
-            self.tell("starts", 0.0, 0)
-        if self.incumbent is not None:
-            share = self.variables.spread(self.variables.vector(self.incumbent.layout)).unsqueeze(0)
-            self.seer.calibrate(share)
+        if kept:
+            self.seer.calibrate(share := torch.stack(kept))
             self._keep(share)
 
     def open(self, starts: int, batch: int) -> None:

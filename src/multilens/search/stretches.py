@@ -37,13 +37,7 @@ class Stretches:
         """Least sum of w Z^2 (Z - Zf)^2 over it, mm^4; infinite where it would end before it begins."""
 
     def best_foci(self, gain: Float[Tensor, " b"], slope: Float[Tensor, " b"], count: int) -> Float[Tensor, "b count"]:
-        """Give the foci of `shared_out` alone."""
-        return self.shared_out(gain, slope, count)[0]
-
-    def shared_out(
-        self, gain: Float[Tensor, " b"], slope: Float[Tensor, " b"], count: int
-    ) -> tuple[Float[Tensor, "b count"], Float[Tensor, " b"]]:
-        """Give the foci that serve the depths best, nearest first, and the score that they come to.
+        """Give the foci that serve the depths best, nearest first.
 
         Args:
             gain: of stereo, err = gain Z^2, 1/mm; infinite where there is none.
@@ -51,7 +45,7 @@ class Stretches:
             count: how many foci, >= 1.
 
         Returns:
-            mm and mm^2. Where stereo is better everywhere a focus is that of the last depths.
+            mm. Where stereo is better everywhere a focus is that of the last depths.
         """
         # In units of the slope: only the ratio decides. Where there is no stereo it is dearer than anything.
         ratio = (gain / slope).nan_to_num(posinf=1e6).clamp(max=1e6).square().unsqueeze(-1)
@@ -71,4 +65,4 @@ class Stretches:
             start = begun[batch, end]
             foci.append(self.focus[start, end])
             end = start.clamp(min=0)
-        return torch.stack(foci[::-1], dim=-1), least[:, -1] * slope.square()
+        return torch.stack(foci[::-1], dim=-1)
