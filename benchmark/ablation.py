@@ -17,6 +17,7 @@ from benchmark.best_known import load
 from benchmark.problems import CASES, Case
 from multilens.search.foci import Foci
 from multilens.search.progress import Progress
+from multilens.search.promise import Promise
 from multilens.storage import write_whole
 from multilens.table_text import markdown_text
 
@@ -52,9 +53,17 @@ def without_shared_out(self: Foci, share: Any) -> Any:
     return self._one_by_one(share, afresh=True)
 
 
+def as_good_as_any(_: object, gain: Any, width: Any) -> Any:
+    """Give the same promise for every packing."""
+    return 0 * width
+
+
 IDEAS: dict[str, tuple[Without, dict[str, Any]]] = {
     "everything": (nullcontext, {}),
     "without first layouts": (lambda: patch("multilens.search.solve.first_layouts", lambda *_: iter(())), {}),
+    "without packings": (lambda: patch("multilens.search.first.packed", lambda *_: iter(())), {}),
+    "without what packings promise": (lambda: patch.object(Promise, "__call__", as_good_as_any), {}),
+    "without a better order along the depths": (lambda: patch.object(Foci, "rearranged", unchanged), {}),
     "without parting overlapping starts": (
         lambda: patch("multilens.search.solve.part", lambda variables, price, share: share),
         {},

@@ -49,8 +49,9 @@ def first_layouts(
     Raises:
         OutOfTimeError: the deadline passed.
     """
-    known = isinstance(question, Problem) and question.has_closed_form
-    if not known or any(lens.position is not None for lens in question.lenses):
+    if not isinstance(question, Problem) or not question.has_closed_form:
+        return
+    if any(lens.position is not None for lens in question.lenses):
         return
     drawn, begun = sketch(question, *tried), torch.empty(0, len(variables.low), dtype=torch.float64)
     crowded = len(question.lenses) <= MOST_LENSES and len(question.depths.unique()) > 1

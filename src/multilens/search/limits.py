@@ -94,13 +94,17 @@ class Limits:
         return apart, parting, room - (radius + self.clearance)[..., None], inward
 
     def _at_edges(self, position: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        from_start = position[..., None, :] - self.start
-        share = np.clip((from_start * self.along_share).sum(-1), 0, 1)
-        offset = from_start - share[..., None] * self.along
-        distance = np.sqrt((offset**2).sum(-1))
+        # Both axes one by one: an axis of two numbers is a slow one to sum over.
+        x, y = (position[..., None, axis] - self.start[:, axis] for axis in (0, 1))
+        share = x * self.along_share[:, 0] + y * self.along_share[:, 1]
+        share = np.minimum(np.maximum(share, 0, out=share), 1, out=share)
+        x -= share * self.along[:, 0]
+        y -= share * self.along[:, 1]
+        distance = np.sqrt(x * x + y * y)
         sign, counts = self._signs(position, distance)
         room = sign * distance + self.reach
-        inward = (sign / np.maximum(distance, TINY))[..., None] * offset
+        per_distance = sign / np.maximum(distance, TINY)
+        inward = np.stack([per_distance * x, per_distance * y], axis=-1)
         if counts is not None:
             room = np.where(counts, room, self.no_limit)
         on_edge = distance == 0

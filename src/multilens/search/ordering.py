@@ -44,7 +44,8 @@ class Ordering:
         """
         order = tip.argsort(kind="stable")
         nearest = order[0]
-        begin = np.clip(slope[nearest] * tip[nearest] / (slope[nearest] + gain), self.edge[0], self.edge[-1])
+        taken_over = slope[nearest] * tip[nearest] / (slope[nearest] + gain)
+        begin = float(taken_over.clip(self.edge[0], self.edge[-1]))
         first, second = np.triu_indices(len(order), 1)
         least, each = self._scores(gain, slope[order][None], begin)[0], np.arange(len(first))
         while len(first):
