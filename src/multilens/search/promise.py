@@ -17,7 +17,7 @@ from jaxtyping import Float
 
 from multilens.search.gapless import Gapless
 
-DEAR = 1e100
+DEAR = 1e90
 """1/mm; a gain of stereo or a slope of defocus that is no better than none, and whose square is a number."""
 
 
