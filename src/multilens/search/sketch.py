@@ -20,7 +20,7 @@ def sketch(question: Question, places: Float[Tensor, "p 2"], room: Float[Tensor,
 
     The error of stereo falls as the baseline grows, and that of defocus as apertures do. Where there is room for the widest
     apertures and for the longest baseline no layout has better ones, and only the foci are left to choose. Where there is less
-    the bodies overlap.
+    the bodies overlap. A lens by itself stands where most room is.
 
     Args:
         question: what is asked.
@@ -29,12 +29,12 @@ def sketch(question: Question, places: Float[Tensor, "p 2"], room: Float[Tensor,
 
     Returns:
         Apertures as wide as they may be, foci as far as they may be. None where a lens has a place of its own, the score is
-        one's own, or no two lenses fit with their widest apertures.
+        one's own, or of several lenses no two fit with their widest apertures.
     """
     if not isinstance(question, Problem) or any(lens.position is not None for lens in question.lenses):
         return None
     ends = _longest_baseline(question)
-    if not ends:
+    if not ends and len(question.lenses) > 1:
         return None
     body = [_widest_body(lens) for lens in question.lenses]
     tried, left = places.numpy(), room.numpy()
