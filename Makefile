@@ -37,7 +37,7 @@ bench: .venv/benchmark
 bench-sweeps: .venv/runtime
 	$(BIN)/python -m benchmark.sweeps
 
-# A sweep of 24 jobs, killed at 20 random moments and run again each time: five minutes.
+# A sweep of 24 jobs, killed at 20 random moments and run again each time: two minutes.
 kills: .venv/runtime
 	$(BIN)/python -m benchmark.kills
 
