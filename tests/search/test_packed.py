@@ -65,6 +65,23 @@ def test_without_defocus_stereo_is_all_they_look_at() -> None:
     assert (best.position[0] - best.position[1]).norm().item() == pytest.approx(48, rel=1e-3)
 
 
+def test_what_stands_where_another_stood_is_polished_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    same, polished = ml.Layout([[(-12.0, 0.0), (12.0, 0.0)]], [[11.0, 11.0]], [[30.0, 40.0]]), []
+    monkeypatch.setattr("multilens.search.packed.packings", lambda *_: same)
+    monkeypatch.setattr("multilens.search.packed.polish", lambda *given, **_: polished.append(given) or given[2])
+    found(eyes(2))
+    assert len(polished) == 1
+
+
+def test_a_wide_lens_leaves_the_narrow_end_to_another(monkeypatch: pytest.MonkeyPatch) -> None:
+    back = ml.Back(ml.polygon([(0, 0), (60, 0), (60, 20), (25, 20), (25, 10), (0, 10)]))
+    problem = ml.Problem(back, [ml.Lens(1.0, (1.0, 5.0)), ml.Lens(1.0, (1.0, 20.0))], ml.linear_depths(20, 50, 64))
+    wrong = ml.Layout([[(50.0, 10.0), (5.0, 5.0)]], [[5.0, 5.0]], [[30.0, 40.0]])
+    monkeypatch.setattr("multilens.search.packed.packings", lambda *_: wrong)
+    best, _ = min(found(problem), key=lambda each: problem.score(each[0]).item())
+    assert best.aperture_radius.tolist() == pytest.approx([5, 10], rel=0.05)
+
+
 def test_they_keep_the_deadline() -> None:
     with pytest.raises(OutOfTimeError):
         found(eyes(2), deadline=monotonic() - 1)

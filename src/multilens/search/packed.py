@@ -1,6 +1,7 @@
 """Where lenses crowd each other: of many packings those that promise most, focused and polished, before any wave."""
 
 from collections.abc import Iterator
+from itertools import islice
 from math import inf
 
 import torch
@@ -8,6 +9,7 @@ from jaxtyping import Float
 from torch import Generator, Tensor
 
 from multilens.problem import Problem
+from multilens.search.exchanged import exchanged
 from multilens.search.foci import Foci
 from multilens.search.packings import packings
 from multilens.search.polish import polish
@@ -16,6 +18,9 @@ from multilens.search.variables import Variables
 
 ROUNDS, PACKED, TRIES = 5, 64, 3
 """How many rounds, packings of each, and those of them that are polished."""
+
+EXCHANGES = 2
+"""Layouts of each round, besides, in which two unlike lenses of the best so far are exchanged."""
 
 ROUGH = 1e-5
 """Part of the score to which they are polished as if depths had no gaps."""
@@ -54,17 +59,16 @@ def packed(
     Raises:
         OutOfTimeError: the deadline passed.
     """
-    best, seen = inf, []
+    tries, best, seen = _Tries(problem, variables, foci, deadline), inf, []
     for _ in range(ROUNDS):
         new = variables.spread(variables.vector(packings(problem, *places, PACKED, generator)))
         own: list[tuple[float, Tensor]] = []
-        for share in foci.widest_nearest(_most_promising(problem, variables, torch.cat([begun, new]))):
-            x = polish(problem, variables, share[variables.free], deadline, ROUGH, gapless=True)
-            own.append((_score(problem, variables, variables.spread(x)), variables.spread(x)))
-            if own[-1][0] < best:
-                best = own[-1][0]
-                yield own[-1][1], False
-        score, share = min(own, key=lambda each: each[0])
+        for score, share in tries.round_of(torch.cat([begun, new])):
+            own.append((score, share))
+            if score < best:
+                best = score
+                yield share, False
+        score, share = min(own, key=_score_of, default=(inf, begun))
         if score < best * (1 + NEARLY) and all(abs(score / before - 1) > ALIKE for before in seen):
             share = foci.rearranged(share)
             best = min(best, _score(problem, variables, share))
@@ -73,10 +77,45 @@ def packed(
         begun = begun[:0]
 
 
-def _most_promising(problem: Problem, variables: Variables, share: Float[Tensor, "b v"]) -> Float[Tensor, "c v"]:
-    gain, slope = problem.closed_form(share.device).gain_and_slope(variables.layout_of(share))
-    promise = Promise(problem.depths.numpy(), problem.score_weights.numpy())
-    return share[promise(gain.numpy(), (1 / slope).sum(-1).numpy()).argsort(kind="stable")[:TRIES]]
+class _Tries:
+    """Polishes, as if depths had no gaps, what stands like nothing that was polished before."""
+
+    def __init__(self, problem: Problem, variables: Variables, foci: Foci, deadline: float) -> None:
+        self.problem, self.variables, self.foci, self.deadline = problem, variables, foci, deadline
+        self.promise = Promise(problem.depths.numpy(), problem.score_weights.numpy())
+        self.polished: list[tuple[float, Tensor]] = []
+
+    def round_of(self, share: Float[Tensor, "b v"]) -> Iterator[tuple[float, Float[Tensor, " v"]]]:
+        """Yield the score and the vector of the most promising, polished, and of the best of all with two lenses exchanged."""
+        yield from self._best_of(share, TRIES)
+        _, best = min(self.polished, key=_score_of)
+        others = exchanged(self.problem, self.variables.layout_of(best))
+        yield from self._best_of(self.variables.spread(self.variables.vector(others)), EXCHANGES)
+
+    def _best_of(self, share: Float[Tensor, "b v"], most: int) -> Iterator[tuple[float, Float[Tensor, " v"]]]:
+        new = (each for each in self._by_promise(share) if not self._is_known(each))
+        for each in islice(new, most):
+            x = self.foci.widest_nearest(each.unsqueeze(0))[0, self.variables.free]
+            x = polish(self.problem, self.variables, x, self.deadline, ROUGH, gapless=True)
+            found = self.variables.spread(x)
+            self.polished.append((_score(self.problem, self.variables, found), found))
+            yield self.polished[-1]
+
+    def _by_promise(self, share: Float[Tensor, "b v"]) -> Float[Tensor, "b v"]:
+        gain, slope = self.problem.closed_form(share.device).gain_and_slope(self.variables.layout_of(share))
+        return share[self.promise(gain.numpy(), (1 / slope).sum(-1).numpy()).argsort(kind="stable")]
+
+    def _is_known(self, share: Float[Tensor, " v"]) -> bool:
+        """Give whether apertures that were polished hold the centres of the same lenses: a polish would lead there again."""
+        if not self.polished:
+            return False
+        before = self.variables.layout_of(torch.stack([each for _, each in self.polished]))
+        away = (self.variables.layout_of(share).position - before.position).norm(dim=-1)
+        return bool((away < before.aperture_radius).all(-1).any())
+
+
+def _score_of(found: tuple[float, Tensor]) -> float:
+    return found[0]
 
 
 def _score(problem: Problem, variables: Variables, share: Float[Tensor, " v"]) -> float:
