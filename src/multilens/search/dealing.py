@@ -9,7 +9,7 @@ from jaxtyping import Float, Int
 from numpy.lib.stride_tricks import sliding_window_view
 
 MOST_ENDS = 512
-"""Places along the depths at which a stretch may begin or end, unless told otherwise."""
+"""Places along the depths at which a stretch may begin or end; the time grows with the square."""
 
 MOST_WORK = 1_500_000
 """Stretches that are compared; beyond, lenses of nearly equal slopes count as alike."""
@@ -66,15 +66,12 @@ class Dealing:
     Args:
         depths: mm, in any order.
         weights: how much each counts.
-        most_ends: places along the depths at which a stretch may begin or end; the time grows with the square.
     """
 
-    def __init__(
-        self, depths: Float[np.ndarray, " z"], weights: Float[np.ndarray, " z"], most_ends: int = MOST_ENDS
-    ) -> None:
+    def __init__(self, depths: Float[np.ndarray, " z"], weights: Float[np.ndarray, " z"]) -> None:
         order = depths.argsort(kind="stable")
         depth, weight = depths[order], weights[order]
-        ends = np.unique(np.linspace(0, len(depth), min(len(depth), most_ends) + 1).round().astype(int))
+        ends = np.unique(np.linspace(0, len(depth), min(len(depth), MOST_ENDS) + 1).round().astype(int))
         self.moments = [np.concatenate([[0.0], (weight * depth**power).cumsum()])[ends] for power in (2, 3, 4)]
         self.beside = depth[ends.clip(max=len(depth) - 1)]
         """The depth after each end, mm; after the last, the last."""
@@ -115,10 +112,10 @@ class Dealing:
         """Give the foci that serve the depths best where it is known which of them comes after which; none counts as another.
 
         Args:
-            gain: of stereo, err = gain Z^2, 1/mm; infinite where there is none.
-            slope: of defocus of each focus, err = slope Z abs(Z - Zf), 1/mm.
-            near: the least that each focus may be, mm.
-            far: the largest, mm.
+            gain: this and the next three as for `best_foci`.
+            slope: of each focus.
+            near: of each.
+            far: of each.
             order: of the foci, the nearest first.
 
         Returns:

@@ -26,8 +26,8 @@ class Ordering:
     """
 
     def __init__(self, depths: Float[np.ndarray, " z"], weights: Float[np.ndarray, " z"]) -> None:
-        self.moments = Gapless(depths, weights).integrals
-        self.edge = Gapless(depths, weights).edge
+        mean = Gapless(depths, weights)
+        self.moments, self.edge = mean.integrals, mean.edge
         density = np.diff(self.moments(self.edge)[0]) / np.diff(self.edge)
         self.eased = np.concatenate([[0.0], (density ** (1 / 3) * np.diff(self.edge)).cumsum()])
         """A measure of depth by which the stretches of the best foci are as long as their apertures are wide."""
