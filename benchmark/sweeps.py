@@ -77,7 +77,7 @@ def overhead(jobs: int, folder: Path) -> Overhead:
             spent[0] += monotonic() - clock
             spent[1] += process_time() - processor
 
-    with patch.object(module, "search", timed), patch("multilens.app.sweep.pictures_drawn", lambda folder: True):
+    with patch.object(module, "search", timed), patch("multilens.app.sweep.pictures_drawn", lambda *given: True):
         _sweep(2, folder / "first")
         spent[:] = [0.0, 0.0]
         clock, processor = monotonic(), process_time()

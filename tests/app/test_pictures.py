@@ -4,9 +4,13 @@ import json
 from pathlib import Path
 
 import pytest
+from hydra_plugins.hydra_joblib_launcher.config import JobLibLauncherConf
+from omegaconf import OmegaConf
 
 from multilens.app.command import run_command
 from multilens.app.pictures import pictures_drawn
+from multilens.app.workers import computing_as, end_workers
+from multilens.sweeps.compute import Compute
 
 SMALL = ["experiment=spider", "search.starts=2", "search.patience=0", "search.proof=1", "depth.count=16"]
 
@@ -37,6 +41,17 @@ def test_plot_draws_them_again_and_tells_where(
     assert {path: path.read_bytes() for path in before} == before
 
 
+def test_workers_draw_the_same(swept: Path):
+    pictures = [swept / f"{stem}.{kind}" for stem in ("count", "layouts", "front") for kind in ("svg", "png")]
+    assert pictures_drawn(swept)
+    before = [path.read_bytes() for path in pictures]
+    for path in pictures:
+        path.unlink()
+    assert pictures_drawn(swept, computing_as(OmegaConf.structured(JobLibLauncherConf(n_jobs=2))))
+    end_workers()
+    assert [path.read_bytes() for path in pictures] == before
+
+
 def test_plot_of_a_sweep_that_found_nothing_is_refused(swept: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
     (tmp_path / "0").mkdir()
     (tmp_path / "0" / "row.json").write_text(json.dumps({"damaged": True}))
@@ -51,7 +66,7 @@ def test_plot_of_a_sweep_that_found_nothing_is_refused(swept: Path, tmp_path: Pa
 def test_pictures_that_cannot_be_drawn_are_told_in_one_line(
     error: Exception, reason: str, swept: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ):
-    def failing(folder: Path) -> None:
+    def failing(folder: Path, compute: Compute) -> None:
         raise error
 
     monkeypatch.setattr("multilens.sweeps.pictures.draw_pictures", failing)

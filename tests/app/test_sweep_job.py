@@ -26,7 +26,7 @@ def _shapes_are_checked_elsewhere(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def sweep(monkeypatch: pytest.MonkeyPatch, folder: Path, *given: str) -> int:
-    monkeypatch.setattr("multilens.app.sweep.pictures_drawn", lambda folder: True)
+    monkeypatch.setattr("multilens.app.sweep.pictures_drawn", lambda *given: True)
     command = ["-m", *SMALL, *(given or SWEPT), f"hydra.sweep.dir={folder}"]
     monkeypatch.setattr("sys.argv", ["multilens", *command])
     return run_command(command)

@@ -18,7 +18,7 @@ def _nothing_is_searched(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Non
         raise NothingFoundError("nobody searched")
 
     monkeypatch.setattr("multilens.app.sweep_job.searched", nothing)
-    monkeypatch.setattr("multilens.app.sweep.pictures_drawn", lambda folder: True)
+    monkeypatch.setattr("multilens.app.sweep.pictures_drawn", lambda *given: True)
     monkeypatch.chdir(tmp_path)
 
 

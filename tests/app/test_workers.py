@@ -7,10 +7,12 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from hydra_plugins.hydra_joblib_launcher.config import JobLibLauncherConf
 from joblib import Parallel, delayed
+from omegaconf import OmegaConf
 
 from multilens.app.loading import load_torch
-from multilens.app.workers import THREADS, end_workers, prepare_workers
+from multilens.app.workers import THREADS, computing_as, end_workers, prepare_workers
 
 SWEEP_OF_TWO_SLEEPERS = """
 import os, sys, time
@@ -61,6 +63,16 @@ def test_a_worker_is_where_its_sweep_is(tmp_path: Path, monkeypatch: pytest.Monk
     assert here() == Path.cwd()
     monkeypatch.chdir(tmp_path)
     assert here() == tmp_path
+
+
+def test_what_follows_the_jobs_is_computed_by_the_workers_that_computed_them() -> None:
+    launcher = OmegaConf.structured(JobLibLauncherConf(n_jobs=2))
+    settings: dict[str, Any] = {key: value for key, value in launcher.items() if key != "_target_"}
+    prepare_workers()
+    # As Hydra's launcher calls it.
+    jobs = set(Parallel(**settings | {"backend": "loky"})([delayed(os.getpid)() for _ in range(20)]))
+    assert set(computing_as(launcher)(os.getpid, [()] * 20)) <= jobs
+    assert os.getpid() not in jobs
 
 
 @pytest.mark.skipif(os.name != "posix", reason="elsewhere a process does not learn that its parent is gone")

@@ -7,7 +7,7 @@ from time import monotonic
 from rich.console import Console
 
 from multilens.app.ending import tell, told
-from multilens.app.workers import Compute
+from multilens.sweeps.compute import Compute
 
 AT_ONCE = 2.0
 """s; what takes no longer needs no telling."""

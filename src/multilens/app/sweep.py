@@ -62,11 +62,12 @@ def _end(config: DictConfig) -> int:
 
     folder = Path(config.hydra.sweep.dir)
     finish_waiting(folder, compute_if_missing)
-    agreed = not config.sweep.agree or let_neighbours_agree(folder, computing_as(config.hydra.launcher))
+    compute = computing_as(config.hydra.launcher)
+    agreed = not config.sweep.agree or let_neighbours_agree(folder, compute)
     rows = write_tables(folder)
     print(aligned(without_empty_columns(cells(rows))))
     print(folder / CSV)
-    drawn = pictures_drawn(folder)
+    drawn = pictures_drawn(folder, compute)
     if not (agreed and drawn):
         return SYSTEM_FAILED
     return NOTHING_FOUND if any(row.score is None for row in rows) else DONE

@@ -12,11 +12,13 @@ from typing import Any
 
 from omegaconf import DictConfig
 
-Compute = Callable[[Callable[..., Any], Sequence[tuple[Any, ...]]], Iterable[Any]]
-"""What calls a function with the arguments of each task and gives what comes out in their order, such as `itertools.starmap`."""
+from multilens.sweeps.compute import Compute
 
 THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMEXPR_NUM_THREADS")
 """Where libraries look, when they are loaded, for how many threads they may have."""
+
+OF_WORKERS = ("n_jobs", "prefer", "require", "verbose", "temp_folder", "max_nbytes", "mmap_mode")
+"""Settings of a launcher for which joblib has workers: for others it would start new ones, which takes two seconds."""
 
 BETWEEN_LOOKS = 1.0
 """s, after which a worker looks again whether its sweep is still there."""
@@ -29,7 +31,7 @@ def prepare_workers() -> None:
 
 
 def computing_as(launcher: DictConfig) -> Compute:
-    """Give what computes many tasks as a sweep's launcher does its jobs: in workers by joblib, or else here.
+    """Give what computes many tasks as a sweep's launcher does its jobs: in the same workers by joblib, or else here.
 
     Args:
         launcher: its configuration.
@@ -40,7 +42,10 @@ def computing_as(launcher: DictConfig) -> Compute:
     def compute(function: Callable[..., Any], tasks: Sequence[tuple[Any, ...]]) -> Iterable[Any]:
         from joblib import Parallel, delayed
 
-        return Parallel(launcher.n_jobs, return_as="generator")(delayed(function)(*task) for task in tasks)
+        # One task at a time: joblib would put several together, and one worker would wait for the other's at the end.
+        settings: dict[str, Any] = {name: launcher[name] for name in OF_WORKERS} | {"batch_size": 1}
+        parallel = Parallel(backend="loky", return_as="generator", **settings)
+        return parallel(delayed(function)(*task) for task in tasks)
 
     return compute
 
@@ -54,7 +59,8 @@ def end_workers() -> None:
     if "joblib" in sys.modules:
         from joblib.externals.loky import get_reusable_executor
 
-        get_reusable_executor().shutdown()
+        # They have nothing left to do: asked to end, they would take a second to let go of their libraries.
+        get_reusable_executor().shutdown(kill_workers=True)
 
 
 @cache

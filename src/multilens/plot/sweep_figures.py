@@ -16,6 +16,27 @@ from multilens.sweep_row import SweepRow
 NAMES = ("count", "layouts", "front", "map")
 
 
+def sweep_figure(name: str, rows: Sequence[SweepRow], answers: Mapping[int, tuple[Question, Layout]]) -> Figure | None:
+    """Draw one picture of a sweep; None where it makes no sense for it.
+
+    Args:
+        name: one of `NAMES`.
+        rows: of the table of the sweep.
+        answers: of "layouts", as `sweep_figures` has them; the others look at the rows alone.
+    """
+    with style():
+        match name:
+            case "count":
+                return count_figure(rows)
+            case "layouts":
+                return layouts_figure(rows, answers)
+            case "front":
+                return front_figure(rows)
+            case "map":
+                return map_figure(rows)
+    raise ValueError(f"{name} must be one of {', '.join(NAMES)}")
+
+
 def sweep_figures(rows: Sequence[SweepRow], answers: Mapping[int, tuple[Question, Layout]]) -> dict[str, Figure]:
     """Draw every picture that makes sense for a sweep.
 
@@ -27,6 +48,5 @@ def sweep_figures(rows: Sequence[SweepRow], answers: Mapping[int, tuple[Question
         "count" where the number of lenses varies, "layouts" where any was found, "front" where what an error costs varies, and
         "map" where two keys vary of the device or the search.
     """
-    with style():
-        figures = (count_figure(rows), layouts_figure(rows, answers), front_figure(rows), map_figure(rows))
-    return {name: figure for name, figure in zip(NAMES, figures, strict=True) if figure is not None}
+    figures = {name: sweep_figure(name, rows, answers) for name in NAMES}
+    return {name: figure for name, figure in figures.items() if figure is not None}

@@ -2,7 +2,7 @@
 
 import json
 from collections import Counter
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from itertools import starmap
 
@@ -13,12 +13,10 @@ from multilens.records import problem_record
 from multilens.search.neighbours import carried_over
 from multilens.search.solve import solve
 from multilens.sweep_row import in_order
+from multilens.sweeps.compute import Compute
 
 Settings = Sequence[tuple[str, str]]
 Listener = Callable[[int, int], None]
-Task = tuple[Design, Sequence[Design]]
-Compute = Callable[[Callable[..., Design | None], Sequence[Task]], Iterable[Design | None]]
-"""What calls a function with the arguments of each task and gives what comes out in their order, such as `itertools.starmap`."""
 
 PROGRESS = 1e-6
 """Part of a score by which a layout must be better to take the place of another: less is a matter of rounding."""

@@ -22,7 +22,8 @@ from multilens.fields import record, text
 from multilens.runs import CONFIG, DESIGN, LOG, write_design
 from multilens.storage import folder_written_whole
 from multilens.sweep_row import UNREADABLE, SweepRow
-from multilens.sweeps.agree import Compute, Listener, agree, unlike_neighbours, why_worse
+from multilens.sweeps.agree import Listener, agree, unlike_neighbours, why_worse
+from multilens.sweeps.compute import Compute
 from multilens.sweeps.job import ROW, Sealed, read_job, row_of, write_job
 from multilens.sweeps.locks import AGREEMENT, forget, held
 from multilens.sweeps.table import read_rows
