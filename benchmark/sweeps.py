@@ -2,7 +2,9 @@
 
     python -m benchmark.sweeps
 
-writes results/sweeps.md. Leave the machine to it: each figure is of two cores that do nothing else.
+writes results/sweeps.md. Leave the machine to it: each figure is of two cores that do nothing else. Machines that are rented share
+more than they say, and are a third slower at some times than at others, so everything is measured in three rounds; what took least
+is compared, and all three are shown.
 """
 
 import contextlib
@@ -33,6 +35,8 @@ STUDY = "experiment=camera_count"
 SHORT = ("experiment=phone_back_island", "search=quick", "lenses.count=5", "search.seed=range(0,12)")
 """A dozen jobs of a second, beside which the start of a worker is long."""
 MAIN = "from multilens.app import main; main()"
+
+ROUNDS = 3
 
 MOST_OVERHEAD = 0.050
 """s of a job beyond its search."""
@@ -103,28 +107,40 @@ def seconds_with(workers: int, folder: Path, *sweep: str) -> float:
 
 def main() -> None:
     """Measure, print and write the figures; exit code 1 where a target is missed."""
-    with tempfile.TemporaryDirectory() as folder:
-        cost = overhead(JOBS, Path(folder))
-        one, two = (seconds_with(workers, Path(folder) / f"study_{workers}", STUDY) for workers in (1, 2))
-        alone, both = (seconds_with(workers, Path(folder) / f"short_{workers}", *SHORT) for workers in (1, 2))
+    costs, study, short = [], {1: [], 2: []}, {1: [], 2: []}
+    for _ in range(ROUNDS):
+        with tempfile.TemporaryDirectory() as folder:
+            costs.append(overhead(JOBS, Path(folder)))
+            for workers in (1, 2):
+                study[workers].append(seconds_with(workers, Path(folder) / f"study_{workers}", STUDY))
+                short[workers].append(seconds_with(workers, Path(folder) / f"short_{workers}", *SHORT))
+    clock = min(cost.clock for cost in costs)
+    speed_up = min(study[1]) / min(study[2])
     rows = [
         ["figure", "measured", "target"],
         [
             f"a job of {JOBS} beyond its search, by the clock",
-            f"{cost.clock * 1e3:.0f} ms",
+            _listed([cost.clock * 1e3 for cost in costs], "ms"),
             f"<= {MOST_OVERHEAD * 1e3:.0f} ms",
         ],
-        ["the same, time of the processor", f"{cost.processor * 1e3:.0f} ms", ""],
-        ["its search, by the clock", f"{cost.search * 1e3:.0f} ms", ""],
-        ["camera_count, 48 jobs, one worker", f"{one:.1f} s", ""],
-        ["camera_count, two workers", f"{two:.1f} s", ""],
-        ["two workers against one", f"{one / two:.2f} times", f">= {LEAST_SPEED_UP} times"],
-        ["12 jobs of a second, one worker and two", f"{alone:.1f} s, {both:.1f} s", ""],
+        ["the same, time of the processor", _listed([cost.processor * 1e3 for cost in costs], "ms"), ""],
+        ["its search, by the clock", _listed([cost.search * 1e3 for cost in costs], "ms"), ""],
+        ["camera_count, 48 jobs, one worker", _listed(study[1], "s"), ""],
+        ["camera_count, two workers", _listed(study[2], "s"), ""],
+        ["two workers against one, least against least", f"{speed_up:.2f} times", f">= {LEAST_SPEED_UP} times"],
+        ["12 jobs of a second, one worker", _listed(short[1], "s"), ""],
+        ["12 jobs of a second, two workers", _listed(short[2], "s"), ""],
     ]
-    text = f"# Sweeps\n\nOn {os.cpu_count()} cores. `make bench-sweeps` writes this page.\n\n{markdown_text(rows)}"
+    told = f"On {os.cpu_count()} cores, each figure of {ROUNDS} rounds. `make bench-sweeps` writes this page."
+    text = f"# Sweeps\n\n{told}\n\n{markdown_text(rows)}"
     print(text)
     RESULT.write_text(text, encoding="utf-8")
-    sys.exit(0 if cost.clock <= MOST_OVERHEAD and one / two >= LEAST_SPEED_UP else 1)
+    sys.exit(0 if clock <= MOST_OVERHEAD and speed_up >= LEAST_SPEED_UP else 1)
+
+
+def _listed(measured: list[float], unit: str) -> str:
+    """Give all that was measured, in the order of the rounds."""
+    return f"{', '.join(f'{one:.3g}' for one in measured)} {unit}"
 
 
 if __name__ == "__main__":
