@@ -5,6 +5,7 @@ import torch
 
 import multilens as ml
 from multilens.bounds.bound import lower_bound
+from multilens.metrics import as_quoted
 
 LENS = ml.Lens(5.0, (1.0, 1.0), disparity_noise=1e-3, blur_noise=1e-3)
 BACK = ml.Back.rectangle(30, 40)
@@ -31,6 +32,16 @@ def test_a_pair_has_its_closed_form(metric, mean_power, figure, unit):
     problem = stereo(metric)
     assert metric.figure(problem.score(PAIR).item()) == pytest.approx(figure * GAIN * mean**0.5, rel=1e-6)
     assert metric.unit == unit
+
+
+@pytest.mark.parametrize(
+    ("metric", "power", "factor"),
+    [(ml.MeanSquare(), 2, 1.0), (ml.Relative(), 1, 100.0), (ml.InverseDepth(), 0, 1000.0)],
+)
+def test_the_error_of_a_pair_is_quoted_in_the_unit_of_the_metric(metric, power, factor):
+    depths = ml.linear_depths(200, 2000, 7)
+    quoted = as_quoted(metric, GAIN * depths**2, depths)
+    torch.testing.assert_close(quoted, factor * GAIN * depths**power)
 
 
 @pytest.mark.parametrize("metric", [ml.Relative(), ml.InverseDepth()])

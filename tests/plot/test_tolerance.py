@@ -4,8 +4,10 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
+from multilens.metrics import Relative
 from multilens.plot.errors import draw_errors
 from multilens.plot.tolerance import BAR, draw_tolerance
+from multilens.problem import Problem
 from multilens.tolerance import Tolerance
 from multilens.working_range import working_range
 
@@ -34,6 +36,15 @@ def test_the_line_is_what_is_allowed(drawn):
     draw_tolerance(axes, problem, layout, Tolerance(percent=0.1))
     depths, allowed = axes.lines[-1].get_data()
     np.testing.assert_allclose(np.asarray(allowed), 1e-3 * np.asarray(depths))
+
+
+def test_the_line_is_in_the_unit_of_the_metric(cases):
+    problem, layout = cases["phone 2"]
+    relative = Problem(problem.back, problem.lenses, problem.depths, metric=Relative())
+    axes = Figure().add_subplot()
+    draw_errors(axes, relative, layout)
+    draw_tolerance(axes, relative, layout, Tolerance(percent=0.1))
+    np.testing.assert_allclose(np.asarray(axes.lines[-1].get_ydata()), 0.1)
 
 
 def test_the_words_name_the_tolerance(drawn):

@@ -16,6 +16,7 @@ from multilens.design import INFEASIBLE
 from multilens.disturbance import Disturbance
 from multilens.field_of_view import Field
 from multilens.fusion import InverseVariance
+from multilens.metrics import Relative
 from multilens.report.run_page import run_page
 from multilens.robust import Robust
 from multilens.score_problem import ScoreProblem
@@ -211,3 +212,11 @@ def test_a_score_of_ones_own_has_a_page_without_depths(opened, design, tmp_path)
 def test_an_infeasible_design_is_refused(design):
     with pytest.raises(ValueError, match="must be feasible to be reported: too small"):
         run_page(replace(design, status=INFEASIBLE, reason="too small"))
+
+
+def test_an_error_is_told_in_mm_and_in_the_unit_of_the_metric(design):
+    relative = as_given(replace(design.problem, metric=Relative()), design.layout)
+    (stops,) = re.findall(r'<script[^>]*id="stops"[^>]*>(.*?)</script>', run_page(relative), re.DOTALL)
+    for stop in json.loads(stops)["stops"]:
+        mm, percent = re.fullmatch(r"([\d.e-]+) mm, ([\d.e-]+) %", stop["error"]).groups()
+        assert float(percent) == pytest.approx(100 * float(mm) / stop["millimetres"], rel=2 * SHOWN)

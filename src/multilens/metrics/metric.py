@@ -44,3 +44,18 @@ def in_words(metric: Metric | None, score: float, digits: int = 6) -> str:
     if metric is None:
         return f"score {score:.{digits}g}"
     return f"{metric.name} {metric.figure(score):.{digits}g} {metric.unit}"
+
+
+def as_quoted(
+    metric: Metric, errors: Float[Tensor, "*batch z"], depths: Float[Tensor, " z"]
+) -> Float[Tensor, "*batch z"]:
+    """Give errors of the depth as a metric quotes them, in its unit: figure(1) sqrt(factor(Z)) err.
+
+    A design whose error is the same everywhere has that as its figure, by a mean and by the worst alike.
+
+    Args:
+        metric: such as `Relative`, whose unit is %.
+        errors: of each depth, mm.
+        depths: Z, mm.
+    """
+    return metric.figure(1.0) * metric.factor(depths).sqrt() * errors

@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import sqrt
 
 import numpy as np
 import torch
@@ -16,6 +15,7 @@ from multilens.bands import NOTHING, Band, dense_depths, errors_at, winner_bands
 from multilens.cues import Measurement
 from multilens.fusion import Best
 from multilens.layout import Layout
+from multilens.metrics import as_quoted
 from multilens.plot.axis import draw_grid
 from multilens.plot.canvas import paper_size, text_size
 from multilens.plot.placing import spread
@@ -42,25 +42,28 @@ LEADER = 9.0
 
 
 def draw_errors(ax: Axes, problem: Problem, layout: Layout) -> None:
-    """Draw the error of every measurement against depth, thin, the least of them bold, and their root mean square.
+    """Draw the error of every measurement against depth, thin, the least of them bold, and the design's figure, dashed.
+
+    Errors are in the unit of the problem's metric: mm, for relative errors %, for those of 1/Z dioptres. The figure is what the
+    metric makes of them all, their root mean square or the worst.
 
     The bold line has the colour of the measurement that is best there. In focus a lens' error is 0, which a logarithmic axis
     cannot show: the dips are cut at the lower edge. A measurement has no line where it fails. Where more than the best counts, the
     error of all measurements together, or with what is known before any, is a black line. Of a field the errors straight ahead
-    are drawn, and the root mean square of the whole.
+    are drawn, and the figure of the whole.
 
     Args:
         ax: drawn on; logarithmic where the depths span more than a factor 4.
         problem: what is asked.
         layout: one layout, not a batch.
     """
-    depths = dense_depths(problem, layout)
-    errors = errors_at(problem, layout, depths).numpy()
+    depths, metric = dense_depths(problem, layout), problem.metric
+    errors = as_quoted(metric, errors_at(problem, layout, depths), depths).numpy()
     at, least = depths.numpy(), errors.min(axis=0)
     errors, least = (np.where(np.isfinite(curve), curve, np.nan) for curve in (errors, least))
-    rmse = sqrt(problem.mean_square(layout).item())
+    figure = metric.figure(problem.score(layout).item())
     logarithmic = _set_depth_axis(ax, problem)
-    bottom, top = _error_limits(errors, least, rmse, logarithmic)
+    bottom, top = _error_limits(errors, least, figure, logarithmic)
     if logarithmic:
         ax.set_yscale("log")
     ax.set_ylim(bottom, top)
@@ -81,17 +84,17 @@ def draw_errors(ax: Axes, problem: Problem, layout: Layout) -> None:
         ax.plot(x, y, linewidth=3.0, marker="o" if len(at) == 1 else None, **look)
     beside_the_best = _beside_the_best(problem, bool(np.isfinite(least).all()))
     if beside_the_best:
-        fused = problem.squared_error(layout.to(torch.float64), depths).detach().sqrt().numpy()
-        ax.plot(at, np.maximum(fused, floor), color=INK, linewidth=1.4, zorder=4)
-    ax.axhline(rmse, color=INK, linewidth=1.0, linestyle=(0, (5, 3)), zorder=4)
-    ax.set_ylabel("depth error (mm)" if problem.field is None else "depth error straight ahead (mm)")
+        fused = problem.squared_error(layout.to(torch.float64), depths).detach().sqrt()
+        ax.plot(at, np.maximum(as_quoted(metric, fused, depths).numpy(), floor), color=INK, linewidth=1.4, zorder=4)
+    ax.axhline(figure, color=INK, linewidth=1.0, linestyle=(0, (5, 3)), zorder=4)
+    ax.set_ylabel(f"depth error{'' if problem.field is None else ' straight ahead'} ({metric.unit})")
     ax.set_xlabel(f"depth ({depth_unit(problem).name})")
     if logarithmic:
         ax.yaxis.set_major_locator(LogLocator(subs=ROUND_DIGITS if top < FEW_DECADES * bottom else (1.0,)))
         ax.yaxis.set_minor_formatter(NullFormatter())
     ax.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     draw_grid(ax)
-    _draw_legend(ax, problem, rmse, beside_the_best)
+    _draw_legend(ax, problem, figure, beside_the_best)
 
 
 def curve_name(measurement: int) -> str:
@@ -184,12 +187,12 @@ def _set_depth_axis(ax: Axes, problem: Problem) -> bool:
 
 
 def _error_limits(
-    errors: Float[np.ndarray, "k m"], least: Float[np.ndarray, " m"], rmse: float, logarithmic: bool
+    errors: Float[np.ndarray, "k m"], least: Float[np.ndarray, " m"], figure: float, logarithmic: bool
 ) -> tuple[float, float]:
-    """Give limits that show the least error and the root mean square well, and the others as far as that goes."""
-    # Where nothing measures at all, only the root mean square is left to show.
+    """Give limits that show the least error and the figure well, and the others as far as that goes."""
+    # Where nothing measures at all, only the figure is left to show.
     worst, largest = (np.nanmax(np.append(curve, 0.0)) for curve in (least, errors))
-    highest = max(worst, rmse) or 1.0
+    highest = max(worst, figure) or 1.0
     if not logarithmic:
         return 0.0, 1.05 * min(largest or 1.0, 2.5 * highest)
     positive = least[least > 0]
@@ -205,7 +208,7 @@ def _beside_the_best(problem: Problem, measured_everywhere: bool) -> str:
     return "with the guess" if problem.prior_error is not None and not measured_everywhere else ""
 
 
-def _draw_legend(ax: Axes, problem: Problem, rmse: float, beside_the_best: str) -> None:
+def _draw_legend(ax: Axes, problem: Problem, figure: float, beside_the_best: str) -> None:
     first = {measurement.cue: measurement for measurement in reversed(problem.measurements)}
     handles = [
         Line2D([], [], color=measurement_colour(m), linewidth=0.9, label=cue) for cue, m in reversed(first.items())
@@ -213,15 +216,18 @@ def _draw_legend(ax: Axes, problem: Problem, rmse: float, beside_the_best: str) 
     handles.append(Line2D([], [], color=FAINT, linewidth=3.0, label="best of all"))
     if beside_the_best:
         handles.append(Line2D([], [], color=INK, linewidth=1.4, label=beside_the_best))
-    handles.append(
-        Line2D([], [], color=INK, linewidth=1.0, linestyle=(0, (5, 3)), label=f"RMSE {significant(rmse)} mm")
-    )
+    quoted = f"{problem.metric.name} {significant(figure)} {problem.metric.unit}"
+    handles.append(Line2D([], [], color=INK, linewidth=1.0, linestyle=(0, (5, 3)), label=quoted))
     narrow = paper_size(ax)[0] < NARROW
     columns = min(len(handles), 3) if narrow else len(handles)
     place = {"loc": "lower left", "bbox_to_anchor": (0.0, 1.0), "ncols": columns, "borderaxespad": 0.3}
     spaced = narrow or len(handles) < 5
     wide = {"columnspacing": 1.4, "handlelength": 2.4} if spaced else {"columnspacing": 0.9, "handlelength": 1.6}
-    ax.legend(handles=handles, frameon=False, fontsize=SMALL_FONT_SIZE, **wide, **place)
+    legend = ax.legend(handles=handles, frameon=False, fontsize=SMALL_FONT_SIZE, **wide, **place)
+    if legend.get_window_extent().width > ax.get_window_extent().width:
+        # What is left of it then reaches beyond the scale, where nothing is, and not beyond the figure.
+        legend.set_loc("lower right")
+        legend.set_bbox_to_anchor((1.0, 1.0))
 
 
 def _name_bands(strip: _Strip, bands: Sequence[Band]) -> tuple[int, bool]:

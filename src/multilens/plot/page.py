@@ -3,9 +3,11 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import torch
 from matplotlib.axes import Axes
 
 from multilens.layout import Layout
+from multilens.metrics import as_quoted
 from multilens.plot.back import MARGIN, SCALE_BAR_HEIGHT, draw_back
 from multilens.plot.bare import best_pairs, part_name
 from multilens.plot.errors import curve_name, draw_errors, draw_winners
@@ -20,7 +22,7 @@ from multilens.tolerance import Tolerance
 WIDE = 400.0
 """Points across a picture: words stay readable on a phone, whose screen is about as wide."""
 
-LEFT, LEGEND, FOOT, STRIP = 52.0, 38.0, 40.0, 148.0
+LEFT, LEGEND, FOOT, STRIP = 66.0, 38.0, 40.0, 148.0
 """Points beside the curves for their scale, above them for the legend, below them for depths and for who is best."""
 
 LINE, DOT = "depth-line", "depth-dot"
@@ -96,7 +98,10 @@ def errors_svg(
         draw_errors(axes, problem, layout)
         if tolerance is not None:
             draw_tolerance(axes, problem, layout, tolerance, above=LEGEND)
-        marks = _draw_marks(axes, depths, errors)
+        quoted = as_quoted(
+            problem.metric, *(torch.tensor(numbers, dtype=torch.float64) for numbers in (errors, depths))
+        )
+        marks = _draw_marks(axes, depths, quoted.tolist())
         titles = {curve_name(k): measurement.label for k, measurement in enumerate(problem.measurements)}
         return ErrorPicture(inline_svg(figure, name, label, titles), marks, LEFT, curves[0])
 

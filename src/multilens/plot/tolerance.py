@@ -7,6 +7,7 @@ import torch
 from matplotlib.axes import Axes
 
 from multilens.layout import Layout
+from multilens.metrics import as_quoted
 from multilens.plot.style import KEPT, SMALL_FONT_SIZE
 from multilens.problem import Problem
 from multilens.tolerance import Tolerance
@@ -28,7 +29,8 @@ def draw_tolerance(ax: Axes, problem: Problem, layout: Layout, tolerance: Tolera
     """
     near, far = ax.get_xlim()
     depths = torch.from_numpy(np.geomspace(near, far, 256))
-    ax.plot(depths, allowed_error(tolerance, depths), color=KEPT, linewidth=1.4, linestyle=(0, (1, 1.5)), zorder=4)
+    allowed = as_quoted(problem.metric, allowed_error(tolerance, depths), depths)
+    ax.plot(depths, allowed, color=KEPT, linewidth=1.4, linestyle=(0, (1, 1.5)), zorder=4)
     for begin, end in working_range(problem, layout, tolerance).intervals:
         ax.axvspan(begin, end, 0, BAR, facecolor=KEPT, edgecolor="none", zorder=5)
     # Above the legend, where no curve is.

@@ -4,7 +4,10 @@ from dataclasses import asdict, dataclass
 from math import inf
 from typing import Any
 
+import torch
+
 from multilens.design import INFEASIBLE, Design
+from multilens.metrics import as_quoted
 from multilens.plot.bare import part_name
 from multilens.plot.errors import curve_name
 from multilens.plot.figures import title, warning
@@ -121,9 +124,18 @@ def _told(problem: Problem, stop: Stop, mark: tuple[float, float]) -> Told:
         best.label if best.lenses else "nothing measures here",
         NONE if stop.baseline is None else f"{significant(stop.baseline, 4)} mm",
         ", ".join(blurs) or NONE,
-        NONE if stop.error is None else f"{significant(stop.error)} mm",
-        f"{significant(stop.counted)} mm" if what_counts(problem) else "",
+        NONE if stop.error is None else _error(problem, stop.error, stop.depth),
+        _error(problem, stop.counted, stop.depth) if what_counts(problem) else "",
         lit,
         tuple(lens + 1 for lens in best.lenses),
         *mark,
     )
+
+
+def _error(problem: Problem, error: float, depth: float) -> str:
+    """Say an error in mm, and where the metric has another unit in that too."""
+    metric, mm = problem.metric, f"{significant(error)} mm"
+    if metric.unit == "mm":
+        return mm
+    (quoted,) = as_quoted(metric, *(torch.tensor([number], dtype=torch.float64) for number in (error, depth))).tolist()
+    return f"{mm}, {significant(quoted)} {metric.unit}"

@@ -55,7 +55,8 @@ def agree(
             jobs = [job for job in sorted(own) if steps[job] % 2 == half]
             news = {job: [other for other in near[job] if seen.get((job, other)) is not now[other]] for job in jobs}
             seen |= {(job, other): now[other] for job in jobs for other in news[job]}
-            looking = [job for job in jobs if news[job]]
+            # Many lenses take long: begun last, they would leave the other workers waiting for them.
+            looking = sorted((job for job in jobs if news[job]), key=lambda job: -len(now[job].problem.lenses))
             tasks = [(now[job], [now[other] for other in news[job]]) for job in looking]
             for job, better in zip(looking, compute(_better_by, tasks), strict=True):
                 listener(turn, job)
