@@ -2,7 +2,9 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from matplotlib.cbook import pts_to_poststep
 
+from multilens.plot.labels import Labels
 from multilens.plot.style import style
 from multilens.plot.sweep_front import FRONT, front, front_figure
 
@@ -60,6 +62,14 @@ def test_every_point_of_the_front_is_labelled_with_its_settings(swept, clear):
     assert labels[0] == {"30 · 4", "40 · 4", "60 · 4"}
     assert labels[1] == labels[2] == {"60 · 2", "60 · 3", "60 · 4"}
     clear(figure)
+
+
+def test_labels_are_kept_off_the_whole_line_its_last_step_too(swept, monkeypatch):
+    kept_off = []
+    monkeypatch.setattr(Labels, "rather_not_on", lambda self, places: kept_off.append(places))
+    figure = front_figure(swept(KEYS, error))
+    for places, line in zip(kept_off, fronts(figure), strict=True):
+        np.testing.assert_array_equal(np.transpose(places), pts_to_poststep(*line.T))
 
 
 def test_jobs_that_share_a_point_share_a_label(swept):

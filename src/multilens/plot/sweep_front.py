@@ -143,7 +143,7 @@ def draw_front(ax: Axes, quantity: str, rows: Sequence[SweepRow], cost: Cost, ke
     for point in zip(*at, strict=True):
         labels.keep_off(*point, 4.0)
     corners = [(x, y) for (x0, y), (x1, _) in pairwise(zip(*at, strict=True)) for x in (x0, x1)]
-    labels.rather_not_on(corners)
+    labels.rather_not_on([*corners, (at[0][-1], at[1][-1])])
     labels.rather_not_on_points(list(zip(*_columns(others, cost), strict=True)))
     alike: dict[tuple[float, float], list[SweepRow]] = {}
     for row, point in zip(best, zip(*at, strict=True), strict=True):
