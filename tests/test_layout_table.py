@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 from multilens.layout import Layout
 from multilens.layout_table import f_numbers, foci, layout_lines
 from multilens.lens import Lens
@@ -20,3 +22,14 @@ def test_every_lens_has_a_line_of_columns():
         "   1  20.100   30.200                 1.250      2.00          300.3",
         "   2   5.250  170.200                 2.000      2.50  900.9, 2000.1",
     ]
+
+
+def test_names_stand_beside_the_numbers_where_they_tell_one_lens_from_another():
+    named = [replace(lens, name=name) for lens, name in zip(LENSES, ("main", "ultra-wide"), strict=True)]
+    assert [line[:24] for line in layout_lines(LAYOUT, named)] == [
+        "lens  name        x (mm)",
+        "   1  main        20.100",
+        "   2  ultra-wide   5.250",
+    ]
+    alike = [replace(lens, name="main") for lens in LENSES]
+    assert layout_lines(LAYOUT, alike) == layout_lines(LAYOUT, LENSES)

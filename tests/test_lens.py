@@ -5,6 +5,7 @@ from math import inf, nan
 import pytest
 
 from multilens import Lens
+from multilens.lens import telling_names
 
 
 @pytest.mark.parametrize(
@@ -58,3 +59,21 @@ def test_a_lens_by_f_number_takes_everything_else_too():
 
 def test_least_body_is_the_smallest_aperture_and_the_clearance():
     assert Lens(6.0, (0.5, 2.0), clearance=1.25).least_body_radius == 1.75
+
+
+def test_a_name_makes_no_lens_unlike_another():
+    assert Lens(6.0, (0.5, 2.0), name="main") == Lens(6.0, (0.5, 2.0), name="tele")
+
+
+@pytest.mark.parametrize("name", ["", " ", "two\nlines", "x" * 41])
+def test_a_name_that_cannot_stand_in_a_table_is_refused(name):
+    with pytest.raises(ValueError, match="name must be a line of at most 40 letters"):
+        Lens(6.0, (0.5, 2.0), name=name)
+
+
+@pytest.mark.parametrize(
+    ("names", "told"),
+    [(("main", "tele"), ("main", "tele")), ((None, "tele"), ("", "tele")), (("main", "main"), ()), ((None, None), ())],
+)
+def test_names_are_told_where_they_tell_one_lens_from_another(names, told):
+    assert telling_names([Lens(6.0, (0.5, 2.0), name=name) for name in names]) == told

@@ -100,6 +100,7 @@ def test_the_layout_is_a_table_that_other_programs_read(tmp_path, design, sketch
             "focus_mm": "300.3",
             "body_radius_mm": "2.25",
             "focal_length_mm": "5.0",
+            "name": "",
         },
         {
             "lens": "2",
@@ -110,6 +111,7 @@ def test_the_layout_is_a_table_that_other_programs_read(tmp_path, design, sketch
             "focus_mm": "900.9;2000.1",
             "body_radius_mm": "3.0",
             "focal_length_mm": "5.0",
+            "name": "",
         },
     ]
 

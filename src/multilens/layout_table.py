@@ -1,9 +1,9 @@
 """A layout as a table to read: a line for each lens."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from multilens.layout import Layout
-from multilens.lens import Lens
+from multilens.lens import Lens, telling_names
 
 HEAD = ("lens", "x (mm)", "y (mm)", "aperture radius (mm)", "f-number", "focus (mm)")
 
@@ -20,7 +20,7 @@ def foci(layout: Layout, lenses: Sequence[Lens]) -> tuple[tuple[float, ...], ...
 
 
 def layout_lines(layout: Layout, lenses: Sequence[Lens]) -> list[str]:
-    """Give the head and a line for each lens, in columns."""
+    """Give the head and a line for each lens, in columns; with the lenses' names where they tell one from another."""
     numbers = zip(
         layout.position.tolist(),
         layout.aperture_radius.tolist(),
@@ -32,5 +32,13 @@ def layout_lines(layout: Layout, lenses: Sequence[Lens]) -> list[str]:
         (f"{i + 1}", f"{x:.3f}", f"{y:.3f}", f"{radius:.3f}", f"{f_number:.2f}", ", ".join(f"{z:.1f}" for z in depths))
         for i, ((x, y), radius, f_number, depths) in enumerate(numbers)
     ]
-    width = [max(len(cell) for cell in column) for column in zip(HEAD, *rows, strict=True)]
-    return ["  ".join(map(str.rjust, row, width)).rstrip() for row in (HEAD, *rows)]
+    columns = [_justified(column, str.rjust) for column in zip(HEAD, *rows, strict=True)]
+    names = telling_names(lenses)
+    if names:
+        columns.insert(1, _justified(("name", *names), str.ljust))
+    return ["  ".join(line).rstrip() for line in zip(*columns, strict=True)]
+
+
+def _justified(cells: Sequence[str], justify: Callable[[str, int], str]) -> list[str]:
+    width = max(map(len, cells))
+    return [justify(cell, width) for cell in cells]

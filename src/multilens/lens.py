@@ -1,11 +1,15 @@
 """A lens: the hardware that is given, and the ranges in which the design may choose."""
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, field
 from math import isfinite
 from typing import Any
 
 from multilens.ranges import refuse_unless_positive, refuse_unless_range
 from multilens.sensor import Sensor
+
+LONGEST_NAME = 40
+"""Letters."""
 
 
 @dataclass(frozen=True)
@@ -29,9 +33,10 @@ class Lens:
         near_focus: nearest depth that the lens can bring into focus, nearer than which no pair under limits measures with it, mm,
             > 0 and no more than the nearest of `focus`; None where it is unknown, which limits nothing.
         sensor: what stands behind the lens; None where it is unknown, which is enough for every cue but the photometric ones.
+        name: what people call the lens, such as tele; it makes no lens unlike another. None for none.
 
     Raises:
-        ValueError: a number is out of its range.
+        ValueError: a number is out of its range, or the name cannot stand in a table.
     """
 
     focal_length: float
@@ -45,6 +50,7 @@ class Lens:
     field_of_view_deg: float | None = None
     near_focus: float | None = None
     sensor: Sensor | None = None
+    name: str | None = field(default=None, compare=False)
 
     def __post_init__(self) -> None:
         refuse_unless_positive("focal_length", self.focal_length)
@@ -62,6 +68,10 @@ class Lens:
         for name, coordinate in zip("xy", self.position or (), strict=False):
             if coordinate is not None and not isfinite(coordinate):
                 raise ValueError(f"{name} of position must be finite, got {coordinate:g}")
+        if self.name is not None and not (
+            self.name.strip() and self.name.isprintable() and len(self.name) <= LONGEST_NAME
+        ):
+            raise ValueError(f"name must be a line of at most {LONGEST_NAME} letters, got {self.name!r:.50}")
         self._refuse_unless_limits()
 
     def _refuse_unless_limits(self) -> None:
@@ -97,3 +107,9 @@ class Lens:
     def least_body_radius(self) -> float:
         """Radius of the disc that the lens needs even at its smallest aperture, mm."""
         return self.aperture_radius[0] + self.clearance
+
+
+def telling_names(lenses: Sequence[Lens]) -> tuple[str, ...]:
+    """Give the name of each lens, empty for one without; nothing at all where names tell no lens from another."""
+    names = tuple(lens.name or "" for lens in lenses)
+    return names if len(set(names)) > 1 else ()

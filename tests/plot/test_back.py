@@ -1,3 +1,4 @@
+from dataclasses import replace
 from functools import cache
 from itertools import combinations
 
@@ -11,6 +12,7 @@ from multilens.geometry.shape import rectangle
 from multilens.plot.back import draw_layout
 from multilens.plot.bare import best_pairs
 from multilens.plot.style import style
+from multilens.problem import Problem
 
 TOUCH = 0.5
 """Pixels that two boxes may share: they are whole pixels, the words are not."""
@@ -73,6 +75,13 @@ def test_the_whole_back_is_on_the_paper(case):
 def test_every_lens_is_numbered_on_the_back_and_in_the_table(cases):
     words = [text.get_text() for text in word_boxes(drawn(*cases["phone 12"]))]
     assert all(words.count(str(number)) == 2 for number in range(1, 13))
+
+
+def test_names_stand_in_the_table_where_they_tell_one_lens_from_another(cases):
+    problem, layout = cases["phone 2"]
+    lenses = [replace(lens, name=name) for lens, name in zip(problem.lenses, ("main", "ultra-wide"), strict=True)]
+    words = [text.get_text() for text in word_boxes(drawn(Problem(problem.back, lenses, problem.depths), layout))]
+    assert {"name", "main", "ultra-wide"} <= set(words)
 
 
 def test_every_keep_out_is_named(cases):

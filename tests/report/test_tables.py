@@ -2,6 +2,7 @@ from dataclasses import replace
 
 from multilens.bounds.bound import Bound
 from multilens.layout import Layout
+from multilens.problem import Problem
 from multilens.report.tables import (
     band_table,
     bound_in_words,
@@ -20,6 +21,14 @@ def test_a_lens_is_told_with_all_its_foci(design):
     table = lens_table(design.problem, design.layout)
     assert table.head[0] == "lens"
     assert table.rows[1] == ("2", "50.000", "80.000", "1.500", "2.29", "6.86", "5.500", "900.0, 4500.0")
+
+
+def test_names_stand_beside_the_numbers_of_lenses(design):
+    lenses = [replace(lens, name=f"camera {i}") for i, lens in enumerate(design.problem.lenses, 1)]
+    table = lens_table(Problem(design.problem.back, lenses, design.problem.depths), design.layout)
+    assert table.head[:3] == ("lens", "name", "x (mm)")
+    assert [row[:2] for row in table.rows[:2]] == [("1", "camera 1"), ("2", "camera 2")]
+    assert {len(row) for row in table.rows} == {len(table.head)}
 
 
 def test_without_depths_there_is_nothing_to_focus_on(design):

@@ -219,6 +219,7 @@ def _build_lens(key: str, config: LensConfig) -> Lens:
         "field_of_view_deg": config.field_of_view_deg,
         "near_focus": config.near_focus,
         "sensor": build_sensor(f"{key}.sensor", config.sensor),
+        "name": config.name,
     }
     if (config.aperture_radius is None) == (config.f_number is None):
         given = "neither" if config.f_number is None else f"both; set the other to null, as in {key}.f_number=null"

@@ -25,6 +25,7 @@ class Stand:
         focal_length: f.
         f_number: N.
         foci: in-focus depth of each tier.
+        called: what people call it; empty for nothing.
     """
 
     number: int
@@ -35,11 +36,12 @@ class Stand:
     focal_length: float
     f_number: float
     foci: tuple[float, ...]
+    called: str = ""
 
     @property
     def name(self) -> str:
-        """Give what the lens is called."""
-        return f"lens {self.number}"
+        """Give its number, and what it is called."""
+        return f"lens {self.number} ({self.called})" if self.called else f"lens {self.number}"
 
 
 @dataclass(frozen=True)
@@ -85,6 +87,7 @@ def plan_of(what: Design | Back) -> Plan:
         [float(lens.focal_length) for lens in lenses],
         what.f_numbers,
         what.foci,
+        [lens.name or "" for lens in lenses],
         strict=True,
     )
     return Plan(what.problem.back, tuple(Stand(i, *place, *rest) for i, (place, *rest) in enumerate(columns, 1)))

@@ -1,6 +1,6 @@
 """A layout as a table: a row for each lens, on the axes of the back."""
 
-from multilens.cad.plan import Plan
+from multilens.cad.plan import Plan, Stand
 from multilens.table_text import csv_text
 
 HEAD = (
@@ -12,6 +12,7 @@ HEAD = (
     "focus_mm",
     "body_radius_mm",
     "focal_length_mm",
+    "name",
 )
 
 
@@ -23,8 +24,10 @@ def write_csv(plan: Plan) -> str:
     """
     if not plan.stands:
         raise ValueError("a table must have lenses, got a back alone")
-    rows = [
-        (s.number, s.x, s.y, s.aperture_radius, s.f_number, ";".join(map(repr, s.foci)), s.body_radius, s.focal_length)
-        for s in plan.stands
-    ]
-    return csv_text([HEAD, *rows])
+    return csv_text([HEAD, *map(_row, plan.stands)])
+
+
+def _row(stand: Stand) -> tuple[int | float | str, ...]:
+    foci = ";".join(map(repr, stand.foci))
+    aperture, body = (stand.aperture_radius, stand.f_number, foci), (stand.body_radius, stand.focal_length)
+    return (stand.number, stand.x, stand.y, *aperture, *body, stand.called)

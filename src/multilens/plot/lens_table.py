@@ -6,6 +6,7 @@ from matplotlib.axes import Axes
 from matplotlib.patches import Rectangle
 
 from multilens.layout import Layout
+from multilens.lens import telling_names
 from multilens.optics.thin_lens import f_number
 from multilens.plot.canvas import Canvas, text_size
 from multilens.plot.style import FAINT, RULE, ink_on, lens_colour, tint
@@ -94,6 +95,11 @@ def lens_table(
         font_size: points.
     """
     head, rows = ["lens"], [[str(i + 1)] for i in range(layout.count)]
+    names = telling_names(problem.lenses)
+    if names:
+        head.append("name")
+        for row, name in zip(rows, names, strict=True):
+            row.append(name)
     if isinstance(problem, Problem):
         unit = depth_unit(problem)
         head.append(f"focus\nZf ({unit.name})")

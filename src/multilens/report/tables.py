@@ -7,6 +7,7 @@ from multilens.bands import NOTHING, Band, errors_at, winner_bands
 from multilens.constraints import body_radius
 from multilens.design import TOUCHING, Design
 from multilens.layout import Layout
+from multilens.lens import telling_names
 from multilens.plot.units import depth_unit, significant
 from multilens.problem import Problem
 from multilens.question import Question
@@ -16,10 +17,13 @@ from multilens.sensitivity import Change, Sensitivity
 from multilens.storage import Origin
 from multilens.working_range import WorkingRange
 
+PLACED = ("x (mm)", "y (mm)", "aperture radius (mm)", "f-number", "focal length (mm)", "body radius (mm)")
+
 
 def lens_table(problem: Question, layout: Layout, name: str = "lenses") -> Table:
     """Tell where each lens stands, how wide it opens and where it focuses."""
-    head = ("lens", "x (mm)", "y (mm)", "aperture radius (mm)", "f-number", "focal length (mm)", "body radius (mm)")
+    names = telling_names(problem.lenses)
+    head = ("lens", *("name" for _ in names[:1]), *PLACED)
     bodies = body_radius(layout, problem.lenses).tolist()
     rows = []
     for i, (lens, (x, y), radius) in enumerate(
@@ -31,13 +35,13 @@ def lens_table(problem: Question, layout: Layout, name: str = "lenses") -> Table
             f"{lens.focal_length:g}",
             f"{bodies[i]:.3f}",
         )
-        row = (str(i + 1), f"{x:.3f}", f"{y:.3f}", *numbers)
+        row = (str(i + 1), *names[i : i + 1], f"{x:.3f}", f"{y:.3f}", *numbers)
         foci = layout.focus[i, : lens.tiers].tolist()
         rows.append((*row, ", ".join(f"{focus:.1f}" for focus in foci)) if isinstance(problem, Problem) else row)
     if isinstance(problem, Problem):
         head = (*head, "focus (mm)")
     caption = "Each lens. x runs to the right and y down, seen from behind; the body is the aperture and its clearance."
-    return Table(name, caption, head, tuple(rows))
+    return Table(name, caption, head, tuple(rows), words=(1,) if names else ())
 
 
 def band_table(problem: Problem, layout: Layout) -> Table:
