@@ -212,6 +212,14 @@ def test_a_printed_design_is_a_table(design):
     ]
 
 
+def test_a_broken_clearance_is_told_by_what_it_lacks():
+    lenses = [Lens(1.0, (0.5, 2.0))] * 2
+    lines = str(
+        by_hand(Problem(Back.disc(9.0), lenses, [5.0]), Layout([[0.0, 0.0], [1.0, 0.0]], [1.5, 1.5], [5.0, 5.0]))
+    )
+    assert lines.splitlines()[-1] == "tightest clearance  lacks 2 mm, lens 1 to lens 2"
+
+
 def test_a_printed_infeasible_design_is_its_reason(design):
     assert str(replace(design, status=INFEASIBLE, reason="no room")) == "infeasible: no room"
 

@@ -43,6 +43,14 @@ def test_a_table_has_a_column_for_every_key_that_was_swept():
     assert failed[:4] == [4, "9", None, "infeasible"]
 
 
+def test_a_swept_key_with_the_name_of_a_column_has_a_column_of_its_own():
+    head, line = cells([SweepRow(0, (("metric", "relative"),), "complete", metric="relative RMSE")])
+    assert dict(zip(head, line, strict=True)) | {"metric=": "relative", "metric": "relative RMSE"} == dict(
+        zip(head, line, strict=True)
+    )
+    assert len(set(head)) == len(head)
+
+
 def test_a_line_of_a_table_is_as_long_as_its_head():
     assert {len(line) for line in cells([FOUND, FAILED])} == {len(cells([])[0]) + 2}
 

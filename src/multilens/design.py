@@ -296,8 +296,9 @@ class Design:
         if self.bound is not None:
             facts["lower bound"] = self._bound_in_words(self.bound)
         closest = self.certificate.closest
-        room = closest.room if closest.room >= TOUCHING else 0.0
-        facts["tightest clearance"] = f"{room:.3g} mm, {closest.what}"
+        room = 0.0 if closest.kept and closest.room < TOUCHING else closest.room
+        lacks = "" if closest.kept else "lacks "
+        facts["tightest clearance"] = f"{lacks}{abs(room):.3g} mm, {closest.what}"
         return facts
 
     def __str__(self) -> str:

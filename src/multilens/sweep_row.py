@@ -104,7 +104,9 @@ def cells(rows: Sequence[SweepRow]) -> list[list[Cell]]:
     keys = list(dict.fromkeys(key for row in rows for key, _ in row.settings))
     after = [name for name in NAMES if name not in ("job", "settings")]
     lines = [(row.record(), dict(row.settings)) for row in rows]
-    return [["job", *keys, *after]] + [
+    # A preset that is swept may have the name of one of ours.
+    swept = [f"{key}=" if key in NAMES else key for key in keys]
+    return [["job", *swept, *after]] + [
         [plain["job"], *(settings.get(key) for key in keys), *(plain[name] for name in after)]
         for plain, settings in lines
     ]

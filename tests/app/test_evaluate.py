@@ -93,6 +93,13 @@ def test_a_saved_layout_can_be_asked_for_other_depths(saved: Path, capsys: pytes
     assert next(line for line in anew.splitlines() if "RMSE" in line) in fresh
 
 
+def test_a_saved_layout_keeps_its_tolerance_under_another_question(
+    saved: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+):
+    said(capsys, "evaluate", str(saved), "tolerance.mm=5", f"out={tmp_path / 'tolerant'}")
+    assert "working range" in said(capsys, "evaluate", str(tmp_path / "tolerant"), "metric=relative")
+
+
 def test_a_saved_layout_can_be_asked_for_other_cues(saved: Path, capsys: pytest.CaptureFixture[str]):
     out = said(capsys, "evaluate", str(saved), "cues=defocus")
     assert "defocus" in out

@@ -1,8 +1,10 @@
 """What a launcher for clusters is refused, and how it fails."""
 
+import os
 from pathlib import Path
 
 import pytest
+from joblib import Parallel, delayed
 
 from multilens.app.command import run_command
 from multilens.app.launcher import failures_told, refuse_foreign_commands
@@ -46,6 +48,23 @@ def test_a_machine_without_slurm_is_told(
     assert run_command(["-m", "lenses.count=1,2", "hydra/launcher=submitit_slurm"]) == 2
     assert "must be started where Slurm's commands are" in capsys.readouterr().err
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_sweep_on_no_core_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+):
+    monkeypatch.chdir(tmp_path)
+    assert run_command(["-m", "lenses.count=1,2", "hydra/launcher=joblib", "hydra.launcher.n_jobs=0"]) == 2
+    assert "hydra.launcher.n_jobs must be at least 1, or -1" in capsys.readouterr().err
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_worker_that_was_killed_is_told_in_one_line():
+    with (
+        pytest.raises(OSError, match="a worker was killed, perhaps for want of memory: the same command"),
+        failures_told(),
+    ):
+        Parallel(n_jobs=2)([delayed(os.kill)(0, 0), delayed(os._exit)(9)])
 
 
 def test_a_node_that_lacks_a_library_is_told_in_one_line():

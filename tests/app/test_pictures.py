@@ -47,8 +47,10 @@ def test_workers_draw_the_same(swept: Path):
     before = [path.read_bytes() for path in pictures]
     for path in pictures:
         path.unlink()
-    assert pictures_drawn(swept, computing_as(OmegaConf.structured(JobLibLauncherConf(n_jobs=2))))
-    end_workers()
+    try:
+        assert pictures_drawn(swept, computing_as(OmegaConf.structured(JobLibLauncherConf(n_jobs=2))))
+    finally:
+        end_workers()
     assert [path.read_bytes() for path in pictures] == before
 
 

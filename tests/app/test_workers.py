@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 from hydra_plugins.hydra_joblib_launcher.config import JobLibLauncherConf
 from joblib import Parallel, delayed
+from joblib.externals.loky import get_reusable_executor
 from omegaconf import OmegaConf
 
 from multilens.app.loading import load_torch
@@ -70,9 +71,23 @@ def test_what_follows_the_jobs_is_computed_by_the_workers_that_computed_them() -
     settings: dict[str, Any] = {key: value for key, value in launcher.items() if key != "_target_"}
     prepare_workers()
     # As Hydra's launcher calls it.
-    jobs = set(Parallel(**settings | {"backend": "loky"})([delayed(os.getpid)() for _ in range(20)]))
-    assert set(computing_as(launcher)(os.getpid, [()] * 20)) <= jobs
-    assert os.getpid() not in jobs
+    Parallel(**settings | {"backend": "loky"})([delayed(os.getpid)() for _ in range(4)])
+    workers = set(get_reusable_executor(reuse=True)._processes)
+    assert set(computing_as(launcher)(os.getpid, [()] * 4)) <= workers
+
+
+@pytest.mark.parametrize("settings", [{"max_nbytes": "1000000"}, {}])
+def test_settings_are_taken_as_hydra_takes_them_and_may_be_left_out(settings: dict[str, Any]) -> None:
+    launcher = OmegaConf.create({"_target_": JobLibLauncherConf._target_, "n_jobs": 2} | settings)
+    assert list(computing_as(launcher)(max, [(1, 2), (3, 0)])) == [2, 3]
+
+
+def test_workers_are_ended_without_letting_go_of_their_libraries_first() -> None:
+    prepare_workers()
+    Parallel(n_jobs=2)([delayed(load_torch)() for _ in range(2)])
+    executor = get_reusable_executor(reuse=True)
+    end_workers()
+    assert executor._flags.kill_workers
 
 
 @pytest.mark.skipif(os.name != "posix", reason="elsewhere a process does not learn that its parent is gone")

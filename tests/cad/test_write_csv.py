@@ -1,5 +1,4 @@
 import csv
-import json
 from dataclasses import replace
 from pathlib import Path
 
@@ -27,11 +26,6 @@ def test_names_are_handed_over(design: Design, tmp_path: Path):
     export(named, tmp_path / "layout.csv")
     with (tmp_path / "layout.csv").open() as file:
         assert [row["name"] for row in csv.DictReader(file)] == ["main", "tele", ""]
-    export(named, tmp_path / "layout.geojson")
-    told = {
-        feature["properties"]["name"] for feature in json.loads((tmp_path / "layout.geojson").read_text())["features"]
-    }
-    assert {"lens 1 (main)", "lens 2 (tele)", "lens 3"} <= told
 
 
 def test_a_back_alone_has_no_table(back: Back, tmp_path: Path):

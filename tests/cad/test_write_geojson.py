@@ -1,4 +1,5 @@
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -7,6 +8,7 @@ from pyogrio.raw import read as read_with_gdal
 
 from multilens.cad.export import export
 from multilens.design import Design
+from multilens.problem import Problem
 
 
 @pytest.fixture
@@ -39,3 +41,13 @@ def test_what_a_lens_is_stands_in_its_properties(path: Path, design: Design):
     assert facts["radius"] == design.layout.aperture_radius[0].item()
     assert facts["focus"] == list(design.foci[0])
     assert facts["f_number"] == design.f_numbers[0]
+
+
+def test_the_name_of_a_lens_stands_behind_its_number(design: Design, tmp_path: Path):
+    lenses = [
+        replace(lens, name=name) for lens, name in zip(design.problem.lenses, ["main", None, "tele"], strict=True)
+    ]
+    named = replace(design, problem=Problem(design.problem.back, lenses, [300.0, 900.0]))
+    export(named, tmp_path / "layout.geojson")
+    features = json.loads((tmp_path / "layout.geojson").read_text())["features"]
+    assert {"lens 1 (main)", "lens 2", "lens 3 (tele)"} <= {feature["properties"]["name"] for feature in features}

@@ -6,7 +6,7 @@ import pytest
 from multilens.back import Back
 from multilens.cad.export import export
 from multilens.cad.layers import LAYERS
-from multilens.cad.plan import Plan
+from multilens.cad.plan import Plan, Stand
 from multilens.cad.write_svg import write_svg
 from multilens.design import Design
 from multilens.geometry.shape import disc
@@ -23,6 +23,13 @@ def test_a_unit_is_a_millimetre_and_all_of_the_back_is_on_the_page(back: Back):
     assert y < top
     assert x + width > right
     assert y + height > bottom
+
+
+def test_a_lens_off_the_back_is_on_the_page(back: Back):
+    stand = Stand(1, 130.0, -25.0, 2.0, 8.0, 5.0, 1.25, (300.0,))
+    x, y, width, _ = map(float, ElementTree.fromstring(write_svg(Plan(back, (stand,)))).get("viewBox", "").split())
+    assert x + width > 138.0
+    assert y < -33.0
 
 
 def test_every_layer_is_a_group_and_lenses_are_true_circles(design: Design, tmp_path: Path):

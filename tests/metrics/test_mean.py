@@ -44,6 +44,16 @@ def test_the_error_of_a_pair_is_quoted_in_the_unit_of_the_metric(metric, power, 
     torch.testing.assert_close(quoted, factor * GAIN * depths**power)
 
 
+def test_what_nothing_measures_stays_infinite_where_a_metric_does_not_count_it():
+    class Near(ml.MeanSquare):
+        def factor(self, depths):
+            return (depths < 1000).to(depths)
+
+    depths = torch.tensor([500.0, 1500.0, 1600.0], dtype=torch.float64)
+    errors = torch.tensor([2.0, 3.0, torch.inf], dtype=torch.float64)
+    assert as_quoted(Near(), errors, depths).tolist() == [2.0, 0.0, torch.inf]
+
+
 @pytest.mark.parametrize("metric", [ml.Relative(), ml.InverseDepth()])
 def test_a_single_focus_is_where_the_weighted_slope_vanishes(metric):
     # Zf = sum v Z^3 / sum v Z^2 with v = 1 / Z^2 or 1 / Z^4 over the range.

@@ -9,6 +9,7 @@ from matplotlib.transforms import Bbox
 
 from multilens.back import Back
 from multilens.geometry.shape import rectangle
+from multilens.layout import Layout
 from multilens.plot.back import draw_layout
 from multilens.plot.bare import best_pairs
 from multilens.plot.style import style
@@ -82,6 +83,18 @@ def test_names_stand_in_the_table_where_they_tell_one_lens_from_another(cases):
     lenses = [replace(lens, name=name) for lens, name in zip(problem.lenses, ("main", "ultra-wide"), strict=True)]
     words = [text.get_text() for text in word_boxes(drawn(Problem(problem.back, lenses, problem.depths), layout))]
     assert {"name", "main", "ultra-wide"} <= set(words)
+
+
+def test_a_lens_off_the_back_is_drawn_whole(cases):
+    problem, layout = cases["phone 2"]
+    off = Layout([[130.0, -25.0], [66.0, 11.0]], layout.aperture_radius, layout.focus)
+    ax = drawn(problem, off).axes[0]
+    bodies = [patch for patch in ax.patches if isinstance(patch, Circle) and patch.get_gid()]
+    edges = [patch.get_window_extent() for patch in bodies]
+    assert len(edges) == 2
+    assert all(
+        ax.bbox.x0 <= box.x0 and box.x1 <= ax.bbox.x1 and ax.bbox.y0 <= box.y0 and box.y1 <= ax.bbox.y1 for box in edges
+    )
 
 
 def test_every_keep_out_is_named(cases):

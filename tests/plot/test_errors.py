@@ -134,6 +134,18 @@ def test_errors_are_in_the_unit_of_the_metric(cases, metric, power, factor):
     assert ax.get_ylabel() == f"depth error ({metric.unit})"
 
 
+def test_where_nothing_measures_the_figure_is_in_the_picture_and_the_axis_upright(cases):
+    problem, layout = cases["phone 2"]
+    blind = [LimitedStereo(PairLimits(max_disparity=1e-6))]
+    asked = Problem(
+        problem.back, problem.lenses, problem.depths, cues=blind, metric=Relative(), fusion=InverseVariance()
+    )
+    ax = drawn(draw_errors, asked, layout).axes[0]
+    (dashed,) = (line for line in ax.lines if line.get_linestyle() == "--")
+    low, high = ax.get_ylim()
+    assert low < dashed.get_ydata()[0] < high
+
+
 def test_the_dashed_line_is_the_figure_of_the_design(cases):
     problem, layout = cases["phone 2"]
     worst = Problem(problem.back, problem.lenses, problem.depths, metric=WorstCase(Relative()))

@@ -117,6 +117,15 @@ def test_jobs_that_were_asked_the_same_are_compared_and_left_alone() -> None:
     assert agree(own, settings)[0] is own[0]
 
 
+def test_names_of_lenses_make_no_other_question() -> None:
+    own = {}
+    for job, name in enumerate(("main", "tele")):
+        design = poor(asked(2))
+        lenses = [replace(lens, name=name) for lens in design.problem.lenses]
+        own[job] = replace(design, problem=ml.Problem(design.problem.back, lenses, design.problem.depths))
+    assert unlike_neighbours(own, crossed(("lenses.lens.name", ["main", "tele"]))) == {0: [], 1: []}
+
+
 def test_a_job_that_found_nothing_stands_between_others() -> None:
     own = {0: poor(asked(2)), 2: poor(asked(2, 50.0))}
     found = agree(own, crossed(("width", [40, 45, 50])))

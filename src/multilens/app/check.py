@@ -17,7 +17,7 @@ from omegaconf import DictConfig, OmegaConf
 from multilens.app import build
 from multilens.app.compose import CONFIG_NAME, config_loader, open_hydra
 from multilens.app.keys import is_known, no_such_option, unknown_key
-from multilens.app.launcher import refuse_foreign_commands, refuse_without_cluster
+from multilens.app.launcher import refuse_foreign_commands, refuse_without_workers
 from multilens.app.plain import plain
 from multilens.app.refusal import RefusedError, one_line
 from multilens.app.schema import Config
@@ -84,7 +84,7 @@ def check_command_line(arguments: Namespace) -> Checked:
         is_sweep = arguments.multirun or (first.hydra.mode is not None and first.hydra.mode.name == "MULTIRUN")
         folder = None
         if is_sweep:
-            refuse_without_cluster(_launcher(first))
+            refuse_without_workers(_launcher(first))
             folder = sweep_folder(_folder_of("hydra.sweep.dir", first), first, words_of(arguments))
             swept += _swept_in_files(first, loader)
         else:

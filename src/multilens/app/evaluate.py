@@ -162,9 +162,10 @@ def _of_file(path: Path, given: Given | None) -> "Design":
         return design
     anew = _asked_anew(problem, given)
     if any(_part(key) == "robust" for key in given.keys):
-        return as_given(build.build_robust(given.config.robust, anew), design.layout)
-    kept = replace(design.problem, problem=anew) if isinstance(design.problem, Robust) else anew
-    return as_given(kept, design.layout)
+        question = build.build_robust(given.config.robust, anew)
+    else:
+        question = replace(design.problem, problem=anew) if isinstance(design.problem, Robust) else anew
+    return replace(as_given(question, design.layout), tolerance=design.tolerance)
 
 
 def _asked_anew(problem: "Problem", given: Given) -> "Problem":

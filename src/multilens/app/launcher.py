@@ -1,7 +1,8 @@
-"""Launchers that hand jobs to a cluster: what they need, what a file must not have them run, and how they fail."""
+"""Launchers that hand jobs to other processes: what they need, what a file must not have them run, and how they fail."""
 
 import shutil
 from collections.abc import Iterator, Mapping, Sequence
+from concurrent.futures import BrokenExecutor
 from contextlib import contextmanager
 from typing import Any
 
@@ -30,8 +31,10 @@ def refuse_foreign_commands(launcher: Mapping[str, Any], lines: Sequence[str]) -
             raise RefusedError(one_line(f"hydra.launcher.{name} must be on one line, got {value!r}"))
 
 
-def refuse_without_cluster(launcher: Mapping[str, Any]) -> None:
-    """Refuse jobs for Slurm where it cannot be reached."""
+def refuse_without_workers(launcher: Mapping[str, Any]) -> None:
+    """Refuse a sweep on no core at all, and jobs for Slurm where it cannot be reached."""
+    if launcher.get("n_jobs") == 0:
+        raise RefusedError("hydra.launcher.n_jobs must be at least 1, or -1 for one on each core, got 0")
     if launcher["_target_"].endswith(".SlurmLauncher") and shutil.which("srun") is None:
         raise RefusedError(
             "hydra/launcher=submitit_slurm must be started where Slurm's commands are, found no srun on the search path"
@@ -40,11 +43,15 @@ def refuse_without_cluster(launcher: Mapping[str, Any]) -> None:
 
 @contextmanager
 def failures_told() -> Iterator[None]:
-    """Turn what comes of a node that lacks a library, of a job that was killed or is not taken, into an OSError of one line."""
+    """Turn into an OSError of one line: a node lacks a library, a worker or a job was killed, a job is not taken."""
     try:
         yield
     except ImportError as error:
         raise OSError(one_line(f"{type(error).__name__}: {error}")) from None
+    except BrokenExecutor:
+        raise OSError(
+            "a worker was killed, perhaps for want of memory: the same command goes on where this one stopped"
+        ) from None
     except RuntimeError as error:
         if not type(error).__module__.startswith("submitit."):
             raise

@@ -18,7 +18,7 @@ THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMEXP
 """Where libraries look, when they are loaded, for how many threads they may have."""
 
 OF_WORKERS = ("n_jobs", "prefer", "require", "verbose", "temp_folder", "max_nbytes", "mmap_mode")
-"""Settings of a launcher for which joblib has workers: for others it would start new ones, which takes two seconds."""
+"""Settings of a launcher by which joblib tells whether its workers will do; else it starts new ones, which takes two seconds."""
 
 BETWEEN_LOOKS = 1.0
 """s, after which a worker looks again whether its sweep is still there."""
@@ -43,11 +43,17 @@ def computing_as(launcher: DictConfig) -> Compute:
         from joblib import Parallel, delayed
 
         # One task at a time: joblib would put several together, and one worker would wait for the other's at the end.
-        settings: dict[str, Any] = {name: launcher[name] for name in OF_WORKERS} | {"batch_size": 1}
+        settings: dict[str, Any] = {name: _number(launcher[name]) for name in OF_WORKERS if name in launcher}
+        settings["batch_size"] = 1
         parallel = Parallel(backend="loky", return_as="generator", **settings)
         return parallel(delayed(function)(*task) for task in tasks)
 
     return compute
+
+
+def _number(setting: Any) -> Any:
+    """Give a number that stands as a word, as Hydra's launcher does."""
+    return int(setting) if isinstance(setting, str) and setting.isdigit() else setting
 
 
 def end_workers() -> None:
@@ -59,8 +65,9 @@ def end_workers() -> None:
     if "joblib" in sys.modules:
         from joblib.externals.loky import get_reusable_executor
 
-        # They have nothing left to do: asked to end, they would take a second to let go of their libraries.
-        get_reusable_executor().shutdown(kill_workers=True)
+        # They have nothing left to do: asked to end, they would take a second to let go of their libraries. What is given
+        # here is another executor, which has no workers yet.
+        get_reusable_executor(kill_workers=True).shutdown()
 
 
 @cache

@@ -61,6 +61,15 @@ class Plan:
         """Give every pair of lenses and its distance, mm."""
         return tuple((a, b, hypot(b.x - a.x, b.y - a.y)) for a, b in combinations(self.stands, 2))
 
+    @property
+    def extent(self) -> tuple[float, float, float, float]:
+        """Give left, least y, right and largest y of the back and the lenses, which may stand off it, mm."""
+        boxes = [
+            (s.x - s.body_radius, s.y - s.body_radius, s.x + s.body_radius, s.y + s.body_radius) for s in self.stands
+        ]
+        left, low, right, high = zip(self.back.outline.bounds, *boxes, strict=True)
+        return min(left), min(low), max(right), max(high)
+
     def turned(self) -> "Plan":
         """Give the same plan with y upwards: y changes its sign, and what is seen stays as it is."""
         keep_outs = tuple(replace(keep_out, shape=_turned(keep_out.shape)) for keep_out in self.back.keep_outs)

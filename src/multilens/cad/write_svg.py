@@ -32,7 +32,7 @@ PENS = {"thin": 0.001, "wide": 0.0025, "dash": 0.005, "text": 0.014}
 
 def write_svg(plan: Plan) -> str:
     """Give a group for each layer; circles and round corners are true arcs."""
-    left, top, right, bottom = plan.back.outline.bounds
+    left, top, right, bottom = plan.extent
     pens = {name: float(f"{part * plan.back.size:.2g}") for name, part in PENS.items()}
     margin = 2 * pens["text"]
     x, y, width, height = left - margin, top - margin, right - left + 2 * margin, bottom - top + 2 * margin

@@ -2,6 +2,7 @@
 
 from typing import Protocol, runtime_checkable
 
+import torch
 from jaxtyping import Float
 from torch import Tensor
 
@@ -58,4 +59,5 @@ def as_quoted(
         errors: of each depth, mm.
         depths: Z, mm.
     """
-    return metric.figure(1.0) * metric.factor(depths).sqrt() * errors
+    # What nothing measures stays infinite, also where a metric does not count it.
+    return torch.where(errors.isinf(), errors, metric.figure(1.0) * metric.factor(depths).sqrt() * errors)

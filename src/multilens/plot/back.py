@@ -12,7 +12,7 @@ from multilens.constraints import body_radius
 from multilens.cues import Measurement
 from multilens.geometry.shape import Shape
 from multilens.layout import Layout
-from multilens.plot.bare import best_pairs, draw_baselines, draw_keep_out, draw_lenses, draw_outline
+from multilens.plot.bare import best_pairs, draw_baselines, draw_keep_out, draw_lenses, draw_outline, extent
 from multilens.plot.canvas import Canvas, paper_size, text_size
 from multilens.plot.lens_table import LensTable, lens_table
 from multilens.plot.placing import Box, Disc, Paper, around, leader_end
@@ -48,7 +48,7 @@ def draw_layout(ax: Axes, problem: Question, layout: Layout) -> None:
         layout: one layout, not a batch.
     """
     table = _fitting_table(ax, problem, layout, _signs(problem, layout, best_pairs(problem, layout)))
-    canvas, paper, corner = _arrange(ax, problem.back.outline, table)
+    canvas, paper, corner = _arrange(ax, extent(problem, layout), table)
     _draw(canvas, paper, problem, layout)
     table.draw(canvas, *corner)
 
@@ -59,7 +59,7 @@ def draw_back(ax: Axes, problem: Question, layout: Layout) -> None:
     In an SVG file lens 2 has the id `lens-2` and the strong baseline of lenses 1 and 2 `pair-1-2`.
     """
     width, height = paper_size(ax)
-    left, top, right, bottom = problem.back.outline.bounds
+    left, top, right, bottom = extent(problem, layout)
     scale = min((width - 2 * MARGIN) / (right - left), (height - SCALE_BAR_HEIGHT - 2 * MARGIN) / (bottom - top))
     canvas = Canvas.scaled(ax, (left + right - width / scale) / 2, top - MARGIN / scale, scale)
     _draw(canvas, Paper(Box(width / 2, height / 2, width, height)), problem, layout)
@@ -109,10 +109,12 @@ def _fitting_table(ax: Axes, problem: Question, layout: Layout, signs: tuple[tup
     return table if fit == 1 else lens_table(ax, problem, layout, signs, fit * SMALL_FONT_SIZE)
 
 
-def _arrange(ax: Axes, outline: Shape, table: LensTable) -> tuple[Canvas, Paper, tuple[float, float]]:
+def _arrange(
+    ax: Axes, drawn: tuple[float, float, float, float], table: LensTable
+) -> tuple[Canvas, Paper, tuple[float, float]]:
     """Give the paper at its scale, what labels may use of it, and where the table goes."""
     width, height = paper_size(ax)
-    left, top, right, bottom = outline.bounds
+    left, top, right, bottom = drawn
     # The table keeps as much from the right edge: words are a little wider or narrower wherever they are drawn.
     beside = (width - table.width - 2 * TABLE_GAP - 2 * MARGIN, height - SCALE_BAR_HEIGHT - 2 * MARGIN)
     below = (width - 2 * MARGIN, height - table.height - TABLE_GAP - SCALE_BAR_HEIGHT - 2 * MARGIN)

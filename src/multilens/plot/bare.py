@@ -30,6 +30,15 @@ def part_name(measurement: Measurement) -> str:
     return "-".join([kind, *(str(lens + 1) for lens in measurement.lenses)])
 
 
+def extent(problem: Question, layout: Layout) -> tuple[float, float, float, float]:
+    """Give left, top, right and bottom of what is drawn, mm: of the back, and of lenses that stand off it."""
+    left, top, right, bottom = problem.back.outline.bounds
+    bodies = body_radius(layout, problem.lenses).tolist()
+    for (x, y), body in zip(layout.position.tolist(), bodies, strict=True):
+        left, top, right, bottom = min(left, x - body), min(top, y - body), max(right, x + body), max(bottom, y + body)
+    return left, top, right, bottom
+
+
 def draw_outline(canvas: Canvas, outline: Shape) -> None:
     """Draw where lenses may stand."""
     canvas.axes.add_patch(shape_patch(outline, facecolor="#f4f4f2", edgecolor=INK, linewidth=1.4, zorder=1))

@@ -193,12 +193,13 @@ def _error_limits(
     # Where nothing measures at all, only the figure is left to show.
     worst, largest = (np.nanmax(np.append(curve, 0.0)) for curve in (least, errors))
     highest = max(worst, figure) or 1.0
+    largest = max(largest, highest)
     if not logarithmic:
-        return 0.0, 1.05 * min(largest or 1.0, 2.5 * highest)
+        return 0.0, 1.05 * min(largest, 2.5 * highest)
     positive = least[least > 0]
     typical = np.quantile(positive, 0.05) if len(positive) else highest
     bottom = max(typical / 3, 1e-5 * highest)
-    return min(bottom, 0.3 * highest), 1.3 * min(largest or 1.0, 10 * highest)
+    return min(bottom, 0.3 * highest), 1.3 * min(largest, 10 * highest)
 
 
 def _beside_the_best(problem: Problem, measured_everywhere: bool) -> str:

@@ -10,11 +10,12 @@ from multilens.lens import telling_names
 from multilens.optics.thin_lens import f_number
 from multilens.plot.canvas import Canvas, text_size
 from multilens.plot.style import FAINT, RULE, ink_on, lens_colour, tint
+from multilens.plot.sweep_groups import shortened
 from multilens.plot.units import depth_unit, significant
 from multilens.problem import Problem
 from multilens.question import Question
 
-FOCI_IN_A_LINE = 4
+FOCI_IN_A_LINE, LONGEST_NAME = 4, 24
 
 LINE = 1.45
 """Height of a line in units of the font size."""
@@ -99,7 +100,7 @@ def lens_table(
     if names:
         head.append("name")
         for row, name in zip(rows, names, strict=True):
-            row.append(name)
+            row.append(shortened(name, LONGEST_NAME))
     if isinstance(problem, Problem):
         unit = depth_unit(problem)
         head.append(f"focus\nZf ({unit.name})")

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from multilens.layout import Layout
 from multilens.metrics import as_quoted
 from multilens.plot.back import MARGIN, SCALE_BAR_HEIGHT, draw_back
-from multilens.plot.bare import best_pairs, part_name
+from multilens.plot.bare import best_pairs, extent, part_name
 from multilens.plot.errors import curve_name, draw_errors, draw_winners
 from multilens.plot.style import INK, WARNING, style
 from multilens.plot.svg import inline_svg, page_figure
@@ -59,7 +59,7 @@ def layout_svg(
         width: points.
         most: height that it may have, points.
     """
-    left, top, right, bottom = problem.back.outline.bounds
+    left, top, right, bottom = extent(problem, layout)
     fitting = (width - 2 * MARGIN) * (bottom - top) / (right - left) + 2 * MARGIN + SCALE_BAR_HEIGHT
     height = min(max(fitting, 120.0), most)
     with style():

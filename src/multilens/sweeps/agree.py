@@ -156,7 +156,9 @@ def _as_text(question: Question, lenses: bool = True) -> str:
     """Give all that is asked as text, with the lenses that it is asked of or without."""
     try:
         asked = problem_record(question)
-        return json.dumps(asked if lenses else asked | {"lenses": None})
+        # A name makes no lens unlike another.
+        alike = [lens | {"name": None} for lens in asked["lenses"]]
+        return json.dumps(asked | {"lenses": alike if lenses else None})
     except TypeError:
         # A score or a cue of one's own is like no other.
         return str(id(question))
