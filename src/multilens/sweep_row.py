@@ -104,12 +104,15 @@ def cells(rows: Sequence[SweepRow]) -> list[list[Cell]]:
     keys = list(dict.fromkeys(key for row in rows for key, _ in row.settings))
     after = [name for name in NAMES if name not in ("job", "settings")]
     lines = [(row.record(), dict(row.settings)) for row in rows]
-    # A preset that is swept may have the name of one of ours.
-    swept = [f"{key}=" if key in NAMES else key for key in keys]
-    return [["job", *swept, *after]] + [
+    return [["job", *map(column_of, keys), *after]] + [
         [plain["job"], *(settings.get(key) for key in keys), *(plain[name] for name in after)]
         for plain, settings in lines
     ]
+
+
+def column_of(key: str) -> str:
+    """Give the name of a swept key's column: the key, with an equals sign where another column has that name."""
+    return f"{key}=" if key in NAMES else key
 
 
 def in_order(values: Iterable[str]) -> list[str]:

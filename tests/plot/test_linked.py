@@ -1,3 +1,4 @@
+from itertools import pairwise
 from xml.etree import ElementTree
 
 import pytest
@@ -63,3 +64,17 @@ def test_the_legend_stays_on_the_chart(count):
         if text.text.startswith("back"):
             assert 0 < float(text.get("y")) < height
             assert float(text.get("x")) + 5.6 * len(text.text) < width
+
+
+@pytest.mark.parametrize(("low", "high"), [(0.67046, 0.67054), (1200.0, 1200.5), (2.0, 2.7)])
+def test_numbers_along_the_axis_keep_apart_however_long_they_are(low, high):
+    alike = Series("alike", "#0072b2", ((low, 4.0, "#job-1"), (high, 4.1, "#job-2")), None)
+    picture = linked_svg([alike], ("time (s)", "RMSE (mm)"), "chart", "errors", {"#job-1": "1", "#job-2": "2"}, False)
+    texts = [
+        text for text in ElementTree.fromstring(picture).iter(f"{{{SVG}}}text") if "middle" in text.get("style", "")
+    ]
+    ticks = [(float(text.get("x")), text.text) for text in texts if text.text not in ("time (s)", "RMSE (mm)")]
+    assert len(ticks) > 1
+    # A digit is 7 of 11 points wide at most.
+    for (x, word), (beside, other) in pairwise(sorted(ticks)):
+        assert beside - x > 7 * (len(word) + len(other)) / 2

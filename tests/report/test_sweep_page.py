@@ -8,6 +8,7 @@ from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.ui import Select
 
 from multilens.layout import Layout
+from multilens.metrics import MeanSquare, Relative
 from multilens.report.sweep_page import MOST_JOBS, MOST_LAYOUTS, sweep_page, worth_drawing, worth_telling
 from multilens.search.evaluate import as_given
 from multilens.sweep_row import SweepRow
@@ -67,6 +68,18 @@ def click(browser, element):
     """Click as a reader does: with a pointer, where the element is."""
     browser.execute_script("arguments[0].scrollIntoView({block: 'center'})", element)
     element.click()
+
+
+def test_figures_in_other_units_do_not_compete_with_those_that_are_shown_first(designs):
+    found = {}
+    for job, metric in enumerate((MeanSquare(), MeanSquare(), Relative(), Relative())):
+        found[job] = as_given(replace(designs[job].problem, metric=metric), designs[job].layout)
+    words = ("mean_square", "mean_square", "relative", "relative")
+    settings = [(("metric", word), ("lenses.count", str(2 + job % 2))) for job, word in enumerate(words)]
+    rows = [row_of(design, job, settings[job], 1.5) for job, design in found.items()]
+    assert max(row.figure for row in rows[2:]) < min(row.figure for row in rows[:2])
+    best = min((0, 1), key=lambda job: rows[job].figure)
+    assert f'data-first="{best}"' in sweep_page(rows, found)
 
 
 def test_the_best_job_is_chosen_first(opened, page, rows, designs):

@@ -19,6 +19,9 @@ LEFT, RIGHT, FOOT, LINE = 56.0, 14.0, 42.0, 15.0
 LOGARITHMIC_SPAN = 4.0
 """Numbers that span more than this factor are drawn on a logarithmic axis."""
 
+ALIKE = 1e-2
+"""Numbers that differ by a smaller part have few ticks, with room for their digits."""
+
 MARGIN = 0.07
 """Part of the span that is left free on either side."""
 
@@ -98,3 +101,6 @@ def _set_limits(ax: Axes, series: Sequence[Series], whole: bool) -> None:
         else:
             room = MARGIN * (high - low) or abs(high) or 1.0
             limit(low - room, high + room)
+            # Numbers that differ late are long.
+            alike = high - low < ALIKE * abs(high)
+            axis.set_major_locator(MaxNLocator(nbins=2 if alike else 6, integer=False))

@@ -113,7 +113,7 @@ def _upwards(question: Group) -> list[Axis]:
 
 def _lines(known: Sequence[SweepRow], rows: Sequence[SweepRow], right: Axis, up: Axis) -> list[Series]:
     keys = [key for key in varied(rows) if not is_asked(key) and key != right.key]
-    names = short_names(keys)
+    names = short_names(varied(rows))
     lines = []
     for k, group in enumerate(grouped(known, keys)):
         ordered = sorted(group.rows, key=lambda row: _rounded(right, row))

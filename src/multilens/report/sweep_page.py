@@ -7,14 +7,14 @@ from typing import Any
 
 from multilens.design import Design
 from multilens.plot.page import layout_svg
-from multilens.plot.sweep_groups import figure_of, in_words, short_names, varied
+from multilens.plot.sweep_groups import figure_of, in_words, questions, short_names, varied
 from multilens.plot.units import significant
 from multilens.report.charts import Chart, charts, is_number
 from multilens.report.page import page
 from multilens.report.table import NONE, Table
 from multilens.report.tables import lens_table
 from multilens.robust import as_drawn
-from multilens.sweep_row import Cell, SweepRow, cells
+from multilens.sweep_row import Cell, SweepRow, cells, column_of
 from multilens.sweeps.table import without_empty_columns
 
 MOST_JOBS, MOST_LAYOUTS, MOST_FAILED = 400, 96, 200
@@ -71,14 +71,14 @@ def sweep_page(rows: Sequence[SweepRow], designs: Mapping[int, Design]) -> str:
     drawn: list[Chart] = list(charts(sorted(told, key=_job), words))
     swept = f": {', '.join(names.values())}" if names else ""
     content: dict[str, Any] = {
-        "title": f"Sweep of {len(rows)} jobs{swept}",
+        "title": f"Sweep of {len(rows)} job{'s' * (len(rows) > 1)}{swept}",
         "facts": _facts(rows, keys),
         "charts": drawn,
         "questions": list(dict.fromkeys(chart.question for chart in drawn)),
         "rights": list(dict.fromkeys(chart.right for chart in drawn)),
         "ups": list(dict.fromkeys(chart.up for chart in drawn)),
         "cards": cards,
-        "best": min(told, key=lambda row: (figure_of(row), row.job)).job if told else None,
+        "best": _best_of_what_is_shown(told),
         "jobs": _table(sorted(told, key=_job), keys),
         "left_out": len(rows) - len(failed) - len(told),
         "without_layout": len(told) - len(cards),
@@ -106,6 +106,12 @@ def figure_in_words(row: SweepRow) -> str:
     if row.figure is None:
         return row.status
     return f"{row.metric or 'score'} {significant(row.figure, 4)} {row.unit or ''}".strip()
+
+
+def _best_of_what_is_shown(rows: Sequence[SweepRow]) -> int | None:
+    """Give the best job of the question that the page opens with: figures of others may be in other units."""
+    found = questions(sorted(rows, key=_job))[0].found if rows else ()
+    return min(found, key=lambda row: (figure_of(row), row.job)).job if found else None
 
 
 def _job(row: SweepRow) -> int:
@@ -149,7 +155,7 @@ def _card(row: SweepRow, design: Design, keys: Mapping[str, Any], names: Mapping
 def _table(rows: Sequence[SweepRow], keys: Mapping[str, Any]) -> Table | None:
     if not rows:
         return None
-    same = {key for row in rows for key, _ in row.settings if key not in keys}
+    same = {column_of(key) for row in rows for key, _ in row.settings if key not in keys}
     head, *lines = without_empty_columns(cells(rows))
     kept = [k for k, name in enumerate(head) if name not in same]
     shown = tuple(tuple(_shown(line[k]) for k in kept) for line in lines)
