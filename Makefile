@@ -33,7 +33,7 @@ studies: .venv/runtime
 bench: .venv/benchmark
 	$(BIN)/python -m benchmark.run $(if $(QUICK),--quick)
 
-# What a sweep costs beside its searches, and what a second worker brings: five minutes, on a machine that does nothing else.
+# What a sweep costs beside its searches, and what a second worker brings: a quarter of an hour, on a machine that does nothing else.
 bench-sweeps: .venv/runtime
 	$(BIN)/python -m benchmark.sweeps
 
