@@ -103,4 +103,4 @@ def _set_limits(ax: Axes, series: Sequence[Series], whole: bool) -> None:
             limit(low - room, high + room)
             # Numbers that differ late are long.
             alike = high - low < ALIKE * abs(high)
-            axis.set_major_locator(MaxNLocator(nbins=2 if alike else 6, integer=False))
+            axis.set_major_locator(MaxNLocator(nbins=2 if alike else 6))

@@ -23,6 +23,9 @@ def sweep_figure(name: str, rows: Sequence[SweepRow], answers: Mapping[int, tupl
         name: one of `NAMES`.
         rows: of the table of the sweep.
         answers: of "layouts", as `sweep_figures` has them; the others look at the rows alone.
+
+    Raises:
+        ValueError: there is no picture of that name.
     """
     with style():
         match name:
